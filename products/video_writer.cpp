@@ -1,8 +1,6 @@
 #include "products/video_writer.h"
 
 #include <cerrno>
-#include <opencv2/core.hpp>
-#include <opencv2/videoio.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,17 +8,21 @@
 #include "core/base/cancel.h"
 #include "core/base/child_process.h"
 #include "core/base/errors.h"
-#include "core/base/log.h"
 
 namespace skyquilt::products {
 namespace {
 
+constexpr const char* kFfmpeg = "ffmpeg";
 constexpr const char* kFfmpegFix = "Check free space and that ffmpeg has libx264";
 
-// Starts an ffmpeg that reads raw frames from its standard input. Nothing when there is no such program.
-std::optional<base::ChildProcess> StartFfmpeg(const std::string& program, const std::filesystem::path& file, int width, int height, int fps) {
+base::InputError Missing(const std::filesystem::path& file) {
+  return {file, "cannot be written: the program ffmpeg is not installed", "Install it (Debian, Ubuntu: apt install ffmpeg)"};
+}
+
+// Starts an ffmpeg that reads raw frames from its standard input.
+base::ChildProcess StartFfmpeg(const std::string& program, const std::filesystem::path& file, int width, int height, int fps) {
   const std::filesystem::path found = base::FindProgram(program);
-  if (found.empty()) return std::nullopt;
+  if (found.empty()) throw Missing(file);
   const std::string size = std::to_string(width) + "x" + std::to_string(height), rate = std::to_string(fps), output = "file:" + file.string();
   const std::vector<std::string> arguments = {"-hide_banner", "-loglevel",  "error",   "-nostats", "-y",   "-f", "rawvideo", "-pix_fmt",
                                               "rgb24",        "-s",         size,      "-r",       rate,   "-i", "pipe:0",   "-an",
@@ -30,7 +32,7 @@ std::optional<base::ChildProcess> StartFfmpeg(const std::string& program, const 
     return base::ChildProcess::StartWriting({found, arguments});
   } catch (const base::StartError& error) {
     // Treated as not installed; for instance a script whose interpreter is missing.
-    if (error.missing() == base::StartError::Missing::kProgram && (error.code() == ENOENT || error.code() == EACCES)) return std::nullopt;
+    if (error.missing() == base::StartError::Missing::kProgram && (error.code() == ENOENT || error.code() == EACCES)) throw Missing(file);
     const bool channel = error.missing() == base::StartError::Missing::kChannel;
     throw base::InputError(file, channel ? "cannot open a socket to ffmpeg" : "ffmpeg cannot be started", error.what());
   }
@@ -50,41 +52,28 @@ struct VideoWriter::Impl {
   int width = 0;
   int height = 0;
   bool closed = false;
-  std::string encoder;
   std::optional<base::ChildProcess> ffmpeg;
-  cv::VideoWriter opencv;
 };
+
+bool CanWriteVideos() {
+  return !base::FindProgram(kFfmpeg).empty();
+}
 
 VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, int fps, const std::string& ffmpeg)
     : impl_(std::make_unique<Impl>()) {
   SKYQUILT_CHECK(width > 0 && height > 0 && width % 2 == 0 && height % 2 == 0, std::to_string(width) + " x " + std::to_string(height));
   SKYQUILT_CHECK(fps > 0, std::to_string(fps));
   impl_->file = file;
-  // OpenCV chooses the container by the extension.
   impl_->partial = file;
   impl_->partial.replace_extension(".partial.mp4");
   impl_->width = width;
   impl_->height = height;
   impl_->ffmpeg = StartFfmpeg(ffmpeg, impl_->partial, width, height, fps);
-  if (impl_->ffmpeg) {
-    impl_->encoder = "ffmpeg libx264";
-    return;
-  }
-  base::LogWarning("the program ffmpeg is not installed, so the video is written as MPEG-4 instead of H.264; install ffmpeg for H.264");
-  impl_->encoder = "OpenCV mp4v";
-  bool opened = false;
-  try {
-    opened = impl_->opencv.open(impl_->partial.string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), fps, cv::Size(width, height));
-  } catch (const cv::Exception&) {
-    opened = false;
-  }
-  if (!opened) throw base::InputError(file, "cannot be written as a video", "Install ffmpeg, and check that its folder is writable");
 }
 
 VideoWriter::~VideoWriter() {
   if (impl_->closed) return;
   impl_->ffmpeg.reset();
-  impl_->opencv.release();
   std::error_code ignored;
   std::filesystem::remove(impl_->partial, ignored);
 }
@@ -92,43 +81,24 @@ VideoWriter::~VideoWriter() {
 void VideoWriter::Write(const image::Image8& frame) {
   SKYQUILT_CHECK(frame.width == impl_->width && frame.height == impl_->height && frame.channels == 3,
                  std::to_string(frame.width) + " x " + std::to_string(frame.height));
-  if (impl_->ffmpeg) {
-    if (impl_->ffmpeg->Send(frame.data)) return;
-    // A signal to the process group ends ffmpeg too; then this is not an error.
-    base::ThrowIfCancelled();
-    throw base::InputError(impl_->file, "cannot be written: " + WaitForEnd(*impl_->ffmpeg), kFfmpegFix);
-  }
-  // OpenCV expects blue, green, red.
-  cv::Mat bgr(frame.height, frame.width, CV_8UC3);
-  for (int y = 0; y < frame.height; ++y) {
-    for (int x = 0; x < frame.width; ++x) {
-      const uint8_t* rgb = frame.At(x, y);
-      bgr.at<cv::Vec3b>(y, x) = cv::Vec3b(rgb[2], rgb[1], rgb[0]);
-    }
-  }
-  impl_->opencv.write(bgr);
+  if (impl_->ffmpeg->Send(frame.data)) return;
+  // A signal to the process group ends ffmpeg too; then this is not an error.
+  base::ThrowIfCancelled();
+  throw base::InputError(impl_->file, "cannot be written: " + WaitForEnd(*impl_->ffmpeg), kFfmpegFix);
 }
 
 void VideoWriter::Close() {
   SKYQUILT_CHECK(!impl_->closed, "closed twice");
-  if (impl_->ffmpeg) {
-    const std::string reason = WaitForEnd(*impl_->ffmpeg);
-    impl_->ffmpeg.reset();
-    if (!reason.empty()) {
-      base::ThrowIfCancelled();
-      throw base::InputError(impl_->file, "cannot be written: " + reason, kFfmpegFix);
-    }
-  } else {
-    impl_->opencv.release();
+  const std::string reason = WaitForEnd(*impl_->ffmpeg);
+  impl_->ffmpeg.reset();
+  if (!reason.empty()) {
+    base::ThrowIfCancelled();
+    throw base::InputError(impl_->file, "cannot be written: " + reason, kFfmpegFix);
   }
   std::error_code error;
   std::filesystem::rename(impl_->partial, impl_->file, error);
   if (error) throw base::InputError(impl_->file, "cannot be renamed from its temporary name: " + error.message(), "Check permissions of its folder");
   impl_->closed = true;
-}
-
-const std::string& VideoWriter::encoder() const {
-  return impl_->encoder;
 }
 
 }  // namespace skyquilt::products

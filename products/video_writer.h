@@ -1,4 +1,4 @@
-// Writes frames to an MP4 file: as H.264 by the ffmpeg program if it is installed, otherwise as MPEG-4 by OpenCV.
+// Writes frames to an MP4 file (H.264) by the program ffmpeg.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,13 @@
 
 namespace skyquilt::products {
 
+// Whether ffmpeg is installed.
+bool CanWriteVideos();
+
 class VideoWriter {
  public:
-  // `ffmpeg`: the program to run; if it does not exist, OpenCV is used. Until Close nothing is written to `file` itself, only to a file beside it.
-  // Throws std::logic_error unless width and height are even and fps > 0, base::InputError when neither program can write the file.
+  // `ffmpeg`: the program to run. Until Close nothing is written to `file` itself, only to a file beside it.
+  // Throws std::logic_error unless width and height are even and fps > 0, base::InputError when the program is missing or cannot be started.
   VideoWriter(const std::filesystem::path& file, int width, int height, int fps, const std::string& ffmpeg = "ffmpeg");
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
@@ -21,7 +24,6 @@ class VideoWriter {
   // Adds a frame: RGB, width x height. Throws base::InputError when ffmpeg fails.
   void Write(const image::Image8& frame);
   void Close();
-  const std::string& encoder() const;  // "ffmpeg libx264" or "OpenCV mp4v"
 
  private:
   struct Impl;

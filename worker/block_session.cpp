@@ -235,6 +235,10 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
 }
 
 LoadedContext LoadContext(const std::filesystem::path& checkpoint) {
+  if (!std::filesystem::exists(checkpoint) && !std::filesystem::exists(checkpoint.string() + ".prev")) {
+    throw base::InputError(checkpoint, "does not exist",
+                           "The context is trained before the blocks; run train on the machine and folder that have it");
+  }
   std::string why;
   const std::filesystem::path usable = checkpoint::NewestUsable(checkpoint, "context", &why);
   if (usable.empty()) throw base::InputError(checkpoint, "cannot be read (" + why + ")", "Train it again with --restart");

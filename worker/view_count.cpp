@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "core/base/cancel.h"
+#include "core/base/progress.h"
 #include "worker/view_counter.h"
 
 namespace skyquilt::worker {
+
+constexpr size_t kManyPhotos = 1000;  // from which this takes seconds
 
 std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
                                        const scene::HeightMap& surface, int min_views, base::ThreadPool& threads) {
@@ -15,6 +19,8 @@ std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Su
   const ViewCounter counter(survey, photos, [&source](int photo) -> const camera::Camera& { return source.CameraOf(photo); });
   std::vector<uint8_t> enough(all.size(), 0);
   constexpr size_t kPart = 65'536;  // between parts, an interruption is noticed
+  std::optional<base::Progress> progress;
+  if (photos.size() >= kManyPhotos) progress.emplace("set-up: views of the photos", static_cast<double>(all.size()), "tiles");
   for (size_t begin = 0; begin < all.size(); begin += kPart) {
     base::ThrowIfCancelled();
     const size_t end = std::min(all.size(), begin + kPart);
@@ -24,6 +30,7 @@ std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Su
       source.RayThrough(all[i].photo, source.TileCentre(all[i]), &origin, &direction);
       enough[i] = !surface.Intersect(origin, direction, &x) || counter.Count(x, 0.0, min_views) >= min_views ? 1 : 0;
     });
+    if (progress) progress->Update(static_cast<double>(end));
   }
   std::vector<Tile> kept;
   for (size_t i = 0; i < all.size(); ++i) {

@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "app/commands/command.h"
 #include "app/commands/describe.h"
@@ -11,15 +13,15 @@ namespace skyquilt::app {
 
 void AddInfo(CLI::App& app, CommandState& state) {
   struct InfoFlags {
-    std::string path;
+    std::vector<std::string> paths;
     bool json = false;
     bool defaults = false;
   };
   const auto flags = std::make_shared<InfoFlags>();
-  CLI::App* command = app.add_subcommand("info", "show the content of a file or folder of skyquilt");
-  command->add_option("path", flags->path, "project, survey folder, or any file in them: .geojson, .h5, .json, .csv, .toml, .ply, .tif")
+  CLI::App* command = app.add_subcommand("info", "show the content of files or folders of skyquilt");
+  command->add_option("paths", flags->paths, "projects, survey folders, or any files in them: .geojson, .h5, .json, .csv, .toml, .ply, .tif")
       ->type_name("PATH");
-  command->add_flag("--json", flags->json, "print JSON");
+  command->add_flag("--json", flags->json, "print JSON: of one path its content, of several an object with the content of each");
   command->add_flag("--defaults", flags->defaults,
                     "print a configuration file: every option with its explanation and its value after --config and --set");
   command->footer(
@@ -27,6 +29,7 @@ void AddInfo(CLI::App& app, CommandState& state) {
       "  skyquilt info out\n"
       "  skyquilt info out/scene.h5 --json\n"
       "  skyquilt info out/blocks.geojson\n"
+      "  skyquilt info out/checkpoints/*.h5\n"
       "  skyquilt info --defaults > my.toml");
   command->callback([&state, flags] {
     state.run_command = [&state, flags] {
@@ -34,13 +37,18 @@ void AddInfo(CLI::App& app, CommandState& state) {
         std::cout << state.Load({}, {}).Toml();
         return;
       }
-      if (flags->path.empty()) throw base::UsageError("skyquilt info needs a file or folder, or --defaults");
-      const nlohmann::ordered_json described = Describe(flags->path);
-      if (flags->json) {
-        std::cout << base::JsonText(described, 2) << "\n";
-      } else {
-        std::cout << FormatReadable(described);
+      if (flags->paths.empty()) throw base::UsageError("skyquilt info needs a file or folder, or --defaults");
+      nlohmann::ordered_json all;
+      for (const std::string& path : flags->paths) {
+        const nlohmann::ordered_json described = Describe(path);
+        if (flags->json) {
+          all[path] = described;
+        } else {
+          if (flags->paths.size() > 1) std::cout << "== " << path << "\n";
+          std::cout << FormatReadable(described);
+        }
       }
+      if (flags->json) std::cout << base::JsonText(flags->paths.size() == 1 ? all[flags->paths.front()] : all, 2) << "\n";
     };
   });
 }

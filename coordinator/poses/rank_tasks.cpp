@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "coordinator/poses/task_message.h"
 #include "coordinator/ranks/failure.h"
@@ -14,12 +15,14 @@ namespace skyquilt::coordinator {
 
 using nlohmann::json;
 
-RankTasks::RankTasks(comm::Communicator& comm, const RunOptions& options, bool verbose, bool quiet)
-    : comm_(comm), setup_(base::JsonText(json{{"threads", options.threads}, {"verbose", verbose}, {"quiet", quiet}})) {}
+RankTasks::RankTasks(comm::Communicator& comm, const RunOptions& options, std::filesystem::path folder, bool verbose, bool quiet)
+    : comm_(comm), own_threads_(options.threads), folder_(std::move(folder)), verbose_(verbose), quiet_(quiet) {}
 
 const std::vector<GroupMember>& RankTasks::Members() {
   if (group_ == nullptr) {
-    auto group = std::make_unique<RankGroup>(comm_, kTagPoses, setup_);
+    shared_.emplace(folder_);
+    const json setup = {{"threads", own_threads_}, {"shared", shared_->Proof()}, {"verbose", verbose_}, {"quiet", quiet_}};
+    auto group = std::make_unique<RankGroup>(comm_, kTagPoses, base::JsonText(setup));
     members_ = group->WaitForRanks();
     group_ = std::move(group);
     for (const GroupMember& member : members_) comm_.Send(member.rank, kTagThreads, std::to_string(member.threads));
@@ -38,11 +41,6 @@ int RankTasks::threads() {
   return most;
 }
 
-std::string RankTasks::NameOf(int rank) {
-  const auto member = std::find_if(members_.begin(), members_.end(), [rank](const GroupMember& one) { return one.rank == rank; });
-  return "rank " + std::to_string(rank) + (member == members_.end() ? "" : " on " + member->host);
-}
-
 void RankTasks::Run(std::span<const prepare::PoseTask> tasks, const prepare::TaskProgress& on_progress) {
   size_t next = 0, n_done = 0;
   std::map<size_t, int> rank_of;  // by number of a task that a rank has
@@ -56,7 +54,7 @@ void RankTasks::Run(std::span<const prepare::PoseTask> tasks, const prepare::Tas
     const comm::Message message = comm_.Receive();
     if (message.tag == kTagReady) {
       const json hello = base::ParseJson(message.bytes);
-      if (hello.contains("failure")) Throw(FailureFromJson(hello.at("failure")), NameOf(message.source));
+      if (hello.contains("failure")) Throw(FailureFromJson(hello.at("failure")), comm_.NameOf(message.source));
     }
     if (message.tag != kTagTaskPart && message.tag != kTagTaskEnd) continue;
     const auto [number, rest] = SplitTaskMessage(message.bytes);
@@ -65,7 +63,7 @@ void RankTasks::Run(std::span<const prepare::PoseTask> tasks, const prepare::Tas
       on_progress(std::stod(rest));
       continue;
     }
-    if (!rest.empty()) Throw(FailureFromJson(base::ParseJson(rest)), NameOf(message.source));
+    if (!rest.empty()) Throw(FailureFromJson(base::ParseJson(rest)), comm_.NameOf(message.source));
     rank_of.erase(number);
     ++n_done;
     hand_out(message.source);

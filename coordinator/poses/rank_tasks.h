@@ -9,6 +9,7 @@
 
 #include "coordinator/project/run_options.h"
 #include "coordinator/ranks/rank_group.h"
+#include "coordinator/ranks/shared_folder.h"
 #include "core/comm/communicator.h"
 #include "prepare/poses/pose_task.h"
 
@@ -18,7 +19,8 @@ namespace skyquilt::coordinator {
 // stopped.
 class RankTasks : public prepare::RemoteTasks {
  public:
-  RankTasks(comm::Communicator& comm, const RunOptions& options, bool verbose, bool quiet);
+  // folder: of the project; all ranks must see the same one.
+  RankTasks(comm::Communicator& comm, const RunOptions& options, std::filesystem::path folder, bool verbose, bool quiet);
 
   // All throw base::UsageError or base::InputError naming rank and host when a rank is not ready, base::Interrupted after a signal.
   int size() override;
@@ -28,10 +30,12 @@ class RankTasks : public prepare::RemoteTasks {
 
  private:
   const std::vector<GroupMember>& Members();
-  std::string NameOf(int rank);
 
   comm::Communicator& comm_;
-  std::string setup_;
+  const int own_threads_;  // as the options have them
+  const std::filesystem::path folder_;
+  const bool verbose_, quiet_;
+  std::optional<SharedFolder> shared_;
   std::unique_ptr<RankGroup> group_;
   std::vector<GroupMember> members_;
   size_t next_number_ = 0;  // of tasks, never used twice: answers to an earlier call may be late

@@ -80,6 +80,7 @@ void ServeTasks(comm::Communicator& comm, const std::string& setup_text) {
     base::InitLog(setup.at("verbose").get<bool>(), name);
     if (setup.at("quiet").get<bool>()) base::SetLogLevel(base::LogLevel::kWarning);
     base::Progress::SetQuiet(true);
+    if (setup.contains("shared")) RequireSharedFolder(setup.at("shared"));
     RunOptions options;
     options.threads = setup.at("threads").get<int>();
     hello["threads"] = options.UsableThreads();

@@ -14,6 +14,8 @@ std::vector<config::Field<RunOptions>> RunOptions::Fields() {
       {"context_share", &O::context_share, Range{0.01, 0.9}, "fraction of the time budget for the context"},
       {"shortest_block_s", &O::shortest_block_s, Range{0.1, 1e6},
        "seconds; every block trains for at least so long, even when many blocks together exceed the time budget"},
+      {"rank_timeout_s", &O::rank_timeout_s, Range{1, 1e6}.Or(0),
+       "seconds; a rank that gives no sign of life for so long ends the job, which resumes when it is run again; 0: never"},
       {"seed", &O::seed, Range::AtLeast(0), "seed of the random numbers of training"},
       {"threads", &O::threads, Range{0, 4096}, "threads per machine; 0: all cores that this process may use"},
       {"memory_gb", &O::memory_gb, Range{0, 1e6},

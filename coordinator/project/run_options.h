@@ -12,6 +12,7 @@ struct RunOptions {
   double time_budget_s = 0.0;     // seconds for the whole training; 0: the steps of [context] and [train] decide
   double context_share = 0.15;    // fraction of the time budget, 0..1
   double shortest_block_s = 2.0;  // seconds that a block trains even when that exceeds the time budget
+  double rank_timeout_s = 120.0;  // seconds for which a rank may stand still before the job ends; 0: for ever
   int seed = 1;
   int threads = 0;         // per machine; 0: every core this process may use
   double memory_gb = 0.0;  // per machine; 0: half of it

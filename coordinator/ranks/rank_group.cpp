@@ -35,7 +35,7 @@ std::vector<GroupMember> RankGroup::WaitForRanks() {
     if (message.tag != kTagReady) continue;
     json one = base::ParseJson(message.bytes);
     const std::string host = one.at("host").get<std::string>();
-    if (one.contains("failure")) Throw(FailureFromJson(one.at("failure")), "rank " + std::to_string(message.source) + " on " + host);
+    if (one.contains("failure")) Throw(FailureFromJson(one.at("failure")), comm_.NameOf(message.source));
     ++ranks_on[host];
     hello[static_cast<size_t>(message.source)] = std::move(one);
     ++n;

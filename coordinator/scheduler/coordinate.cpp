@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/shared_folder.h"
 #include "coordinator/scheduler/rank_speeds.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -26,8 +27,8 @@ double SecondsSince(Clock::time_point start) {
 
 }  // namespace
 
-void ThrowIfEndsCommand(const FieldOutcome& outcome) {
-  if (outcome.failure && outcome.failure.kind != Failure::kBlock) Throw(outcome.failure);
+void ThrowIfEndsCommand(const FieldOutcome& outcome, const std::string& who) {
+  if (outcome.failure && outcome.failure.kind != Failure::kBlock) Throw(outcome.failure, who);
 }
 
 namespace {
@@ -73,7 +74,7 @@ class Coordination {
       if (message->tag == kTagStatus) TakeStatus(*message);
       if (message->tag == kTagOutcome) TakeOutcome(*message);
     }
-    if (fatal_) ThrowIfEndsCommand(*fatal_);
+    if (fatal_) ThrowIfEndsCommand(*fatal_, comm_.NameOf(fatal_->rank));
     if (interrupted_) throw base::Interrupted();
   }
 
@@ -207,7 +208,8 @@ class RankReporter {
     if (SecondsSince(last_poll_) > 0.05) {
       last_poll_ = Clock::now();
       while (const std::optional<comm::Message> message = comm_.TryReceive()) {
-        if (message->tag == kTagStop) stop_ = true;
+        done_ = done_ || message->tag == kTagDone;  // rank 0 ended the training by an error of its own
+        if (message->tag == kTagStop || done_) stop_ = true;
         // A request for an earlier job may arrive late, after that job has ended; it does not concern this one.
         if (message->tag == kTagGiveBack && message->bytes == job_text_) yield_ = true;
         if (stop_ || yield_) base::RequestCancel();
@@ -221,11 +223,13 @@ class RankReporter {
   }
   // Only the block was asked for: the rank stays in the training.
   bool only_yielded() const { return yield_ && !stop_; }
+  bool done() const { return done_; }
 
  private:
   comm::Communicator& comm_;
   bool stop_ = false;
   bool yield_ = false;
+  bool done_ = false;
   std::string job_text_;
   Clock::time_point last_poll_{};
   Clock::time_point last_sent_{};
@@ -242,17 +246,19 @@ void CoordinateBlocks(comm::Communicator& comm, BlockQueue& queue, const FieldTr
   }
 }
 
-void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int threads) {
+void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int threads, const std::filesystem::path& checkpoints) {
   while (true) {
     const comm::Message message = WaitForMessage(comm);
     if (message.tag == kTagDone) return;
     if (message.tag != kTagJob) continue;  // a stop for a job that ended before it arrived
     const FieldJob job = JobFromText(message.bytes);
     RankReporter reporter(comm, job);
-    const FieldOutcome outcome = RunField(
+    FieldOutcome outcome = RunField(
         trainer, job, [&reporter](const worker::TrainStatus& status) { reporter(status); }, comm.rank(), threads);
-    if (reporter.only_yielded()) base::WithdrawRequest();
+    if (reporter.only_yielded() || reporter.done()) base::WithdrawRequest();
+    if (!outcome.failure && !checkpoints.empty()) outcome.saved = FileStamp(checkpoints / (job.name + ".h5"));
     comm.Send(0, kTagOutcome, ToText(outcome));
+    if (reporter.done()) return;
   }
 }
 

@@ -1,7 +1,9 @@
 // Hands blocks to ranks and collects the results. Rank 0 coordinates; it trains only when it is the only rank.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "coordinator/scheduler/block_queue.h"
@@ -24,10 +26,11 @@ struct CoordinateHooks {
 // Blocks that failed are in queue.outcomes() with their reason.
 void CoordinateBlocks(comm::Communicator& comm, BlockQueue& queue, const FieldTrainer& alone, int alone_threads, const CoordinateHooks& hooks);
 
-// Throws base::Interrupted, base::InputError or base::UsageError for an outcome of that kind; returns for the others.
-void ThrowIfEndsCommand(const FieldOutcome& outcome);
+// Throws base::Interrupted, base::InputError or base::UsageError for an outcome of that kind; returns for the others. `who`: the rank, for messages.
+void ThrowIfEndsCommand(const FieldOutcome& outcome, const std::string& who = "");
 
-// A worker rank's side: trains the jobs it receives until kTagDone.
-void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int threads);
+// A worker rank's side: trains the jobs it receives until kTagDone. checkpoints: the folder of <name of the job>.h5, of which rank 0 is told what
+// this machine sees there; empty: it is not told.
+void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int threads, const std::filesystem::path& checkpoints = {});
 
 }  // namespace skyquilt::coordinator

@@ -66,13 +66,21 @@ FieldOutcome RunField(const FieldTrainer& trainer, const FieldJob& job, const wo
   outcome.rank = rank;
   outcome.threads = threads;
   const auto start = std::chrono::steady_clock::now();
+  const auto elapsed_s = [&start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  bool steps = false;
+  const worker::Reporter timed = [&](const worker::TrainStatus& status) {
+    if (!steps) outcome.setup_s = elapsed_s();
+    steps = true;
+    if (report) report(status);
+  };
   try {
-    outcome.result = trainer(job, report);
+    outcome.result = trainer(job, timed);
     if (!outcome.result.ok) outcome.failure = {Failure::kBlock, outcome.result.reason};
   } catch (...) {
     outcome.failure = CurrentFailure();
   }
-  outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.wall_s = elapsed_s();
+  if (!steps) outcome.setup_s = outcome.wall_s;
   outcome.peak_rss_bytes = base::PeakRssBytes();
   return outcome;
 }
@@ -88,7 +96,9 @@ std::string ToText(const FieldOutcome& outcome) {
                   {"rank", outcome.rank},
                   {"threads", outcome.threads},
                   {"wall_s", outcome.wall_s},
+                  {"setup_s", outcome.setup_s},
                   {"peak_rss_bytes", outcome.peak_rss_bytes},
+                  {"saved", outcome.saved},
                   {"ok", r.ok},
                   {"steps", r.steps},
                   {"seconds", r.seconds},
@@ -124,7 +134,9 @@ FieldOutcome OutcomeFromText(const std::string& text) {
   outcome.rank = j.at("rank").get<int>();
   outcome.threads = j.at("threads").get<int>();
   outcome.wall_s = Number(j, "wall_s");
+  outcome.setup_s = Number(j, "setup_s");
   outcome.peak_rss_bytes = j.at("peak_rss_bytes").get<int64_t>();
+  outcome.saved = j.value("saved", "");
   outcome.result.ok = j.at("ok").get<bool>();
   outcome.result.reason = outcome.failure.reason;
   outcome.result.steps = j.at("steps").get<int64_t>();

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "coordinator/ranks/messages.h"
 #include "coordinator/ranks/rank_group.h"
+#include "coordinator/ranks/shared_folder.h"
 #include "coordinator/scheduler/block_queue.h"
 #include "coordinator/scheduler/context_preview.h"
 #include "coordinator/scheduler/coordinate.h"
@@ -59,7 +61,11 @@ class Training {
     }
     // Decoding is not training: the budget starts here.
     start_ = std::chrono::steady_clock::now();
+    std::optional<SharedFolder> shared;
+    if (comm_.size() > 1) shared.emplace(project_.CheckpointFolder());
     const json setup = {{"project", project_.folder.string()},
+                        {"shared", shared ? shared->Proof() : json()},
+                        {"pixels", pixels.identity()},
                         {"settings", Settings(settings_).Toml()},
                         {"config_hash", input_.config_hash},
                         {"verbose", input_.verbose},
@@ -84,6 +90,8 @@ class Training {
 
  private:
   // Seconds of this configuration's training, earlier runs included.
+  // Set-up is not training: what ranks spend on it is not taken from the time budget.
+  void SetAside(double seconds) { start_ += std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds)); }
   double Now() const { return spent_before_s_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   // Tells each rank how many threads it has. Returns the smallest number, and in *per_host the largest number of ranks that share a machine.
@@ -116,6 +124,7 @@ class Training {
       };
       const FieldOutcome outcome = RunField(trainer, job, report, 0, threads);
       RethrowIfFatal(outcome);
+      SetAside(outcome.setup_s);
       if (queue.RecordOutcome(outcome)) {
         base::LogWarning("the context failed and is tried again with half the learning rate: {}", outcome.failure.reason);
         progress.FieldRestarted(job);
@@ -167,32 +176,34 @@ class Training {
     hooks.now_s = [this] { return Now(); };
     hooks.handed_out = [&](const FieldJob& job, int rank) {
       if (options.has_deadline) ledger_.AssignSeconds(job.name, job.seconds);
-      base::LogDebug("{} is given to rank {}{}", job.name, rank, job.seconds > 0.0 ? " for " + base::FormatDuration(job.seconds) : "");
+      base::LogDebug("{} is given to {}{}", job.name, comm_.NameOf(rank), job.seconds > 0.0 ? " for " + base::FormatDuration(job.seconds) : "");
     };
     hooks.status = [&](const FieldJob& job, const worker::TrainStatus& status) {
       progress.Update(job, queue.Cost(job.block), status);
       ledger_.SetSpent(Now(), false);
     };
     hooks.finished = [&](const FieldOutcome& outcome, bool retried) {
+      SetAside(outcome.setup_s / options.n_workers);
       if (retried) {
-        base::LogWarning("{} {} and is tried again with half the learning rate", outcome.job.name,
+        base::LogWarning("{}{} {} and is tried again with half the learning rate", outcome.job.name, On(outcome),
                          outcome.failure ? "failed (" + outcome.failure.reason + ")" : "shows its photos worse than the context");
         progress.FieldRestarted(outcome.job);
         return;
       }
       progress.FieldDone(outcome.job, queue.Cost(outcome.job.block));
+      RequireSaved(outcome);
       ledger_.AddOutcome(outcome);
       if (outcome.failure.kind == Failure::kNone) {
         LogField(outcome);
       } else {
-        base::LogError("{} failed after {} tries: {}", outcome.job.name, outcome.job.attempt + 1, outcome.failure.reason);
+        base::LogError("{}{} failed after {} tries: {}", outcome.job.name, On(outcome), outcome.job.attempt + 1, outcome.failure.reason);
       }
     };
-    hooks.moved = [](const FieldJob& job, int from_rank, int to_rank) {
+    hooks.moved = [this](const FieldJob& job, int from_rank, int to_rank) {
       if (to_rank == from_rank) {
-        base::LogInfo("{} stays on rank {}: no other rank would finish it earlier", job.name, from_rank);
+        base::LogInfo("{} stays on {}: no other rank would finish it earlier", job.name, comm_.NameOf(from_rank));
       } else {
-        base::LogInfo("{} continues on rank {}: rank {} is slow", job.name, to_rank, from_rank);
+        base::LogInfo("{} continues on {}: {} is slow", job.name, comm_.NameOf(to_rank), comm_.NameOf(from_rank));
       }
     };
     try {
@@ -202,6 +213,21 @@ class Training {
       throw;
     }
     progress.Finish();
+  }
+
+  // " on rank 2 on node7"; nothing for this process alone.
+  std::string On(const FieldOutcome& outcome) const { return comm_.size() > 1 ? " on " + comm_.NameOf(outcome.rank) : ""; }
+
+  // A block that another machine finished must be on this machine's disk too.
+  void RequireSaved(const FieldOutcome& outcome) const {
+    if (outcome.saved.empty()) return;
+    const std::filesystem::path file = project_.CheckpointFolder() / (outcome.job.name + ".h5");
+    const std::string here = FileStamp(file);
+    if (here == outcome.saved) return;
+    throw base::InputError(file,
+                           "was finished by " + comm_.NameOf(outcome.rank) + " and has " + outcome.saved + " there, but this machine sees " +
+                               (here.empty() ? "no such file" : here),
+                           "Put the project on a disk that all machines share, under the same path on each, and run the same command again");
   }
 
   void RethrowIfFatal(const FieldOutcome& outcome) {
@@ -245,17 +271,18 @@ void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
     if (setup.at("quiet").get<bool>()) base::SetLogLevel(base::LogLevel::kWarning);
     base::Progress::SetQuiet(true);
     const Project project{setup.at("project").get<std::string>()};
+    RequireSharedFolder(setup.at("shared"));
     Settings settings;
     config::ReadTomlText(setup.at("settings").get<std::string>(), "settings from rank 0", settings.AllSections());
     const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
     const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
-    base::ThreadPool one(1);
-    image::PixelCache pixels = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, one);
+    image::PixelCache pixels = image::PixelCache::OpenBuilt(project.PixelCacheFile(), setup.at("pixels").get<std::string>());
     pixels.Stream(MustStream(pixels, blocks, settings, settings.run.UsableThreads(), comm.local_size()));
     hello["threads"] = settings.run.UsableThreads();
     const int threads = std::stoi(Register(comm, hello, kTagThreads));
     base::ThreadPool pool(threads);
-    ServeBlocks(comm, MakeFieldTrainer(survey, blocks, pixels, settings, project, setup.at("config_hash").get<std::string>(), pool), threads);
+    ServeBlocks(comm, MakeFieldTrainer(survey, blocks, pixels, settings, project, setup.at("config_hash").get<std::string>(), pool), threads,
+                project.CheckpointFolder());
   });
 }
 

@@ -60,6 +60,7 @@ void RequireSameConfiguration(Pipeline& pipeline, const std::string& first) {
 void RunStage(Pipeline& pipeline, const std::string& name) {
   const Stage& stage = StageNamed(name);
   const Project& project = pipeline.project;
+  pipeline.comm.EndAfterStandstill(pipeline.settings.run.rank_timeout_s);
   for (const Stage::RequiredFile& required : stage.required) RequireFile(required.file(project), required.stage, project);
   if (stage.check != nullptr) stage.check(project);
   // Identify the inputs before a restart removes anything: they may be among the removed files.

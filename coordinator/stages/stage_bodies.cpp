@@ -20,6 +20,7 @@
 #include "products/camera_path.h"
 #include "products/map_products.h"
 #include "products/render_views.h"
+#include "products/video_writer.h"
 #include "simulate/simulate.h"
 
 namespace skyquilt::coordinator {
@@ -50,7 +51,7 @@ std::string SimulateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const prepare::PrepareInput input{.photos = pipeline.photos, .model = pipeline.model, .out_folder = pipeline.project.SurveyFolder()};
   base::ThreadPool threads(pipeline.settings.run.threads);
-  RankTasks ranks(pipeline.comm, pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+  RankTasks ranks(pipeline.comm, pipeline.settings.run, pipeline.project.folder, pipeline.verbose, pipeline.quiet);
   const auto show = [&](const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known) {
     MakeFirstPicture(pipeline, survey, poses_known, threads);
   };
@@ -123,7 +124,11 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
     base::LogInfo("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", maps.grid.width, maps.grid.height, maps.grid.resolution_m,
                   100.0 * maps.filled, folder.string());
   }
-  if (options.video_seconds > 0.0) {
+  if (options.video_seconds > 0.0 && !products::CanWriteVideos()) {
+    base::LogWarning(
+        "no video was made: the program ffmpeg is not installed. Install it (Debian, Ubuntu: apt install ffmpeg), then: skyquilt render {} --video",
+        pipeline.project.folder.string());
+  } else if (options.video_seconds > 0.0) {
     const std::filesystem::path file = folder / (options.video_path + ".mp4");
     const products::RenderStats stats =
         products::RenderVideo(products::RendererOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads),

@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <random>
 #include <system_error>
 
 #include "core/base/errors.h"
@@ -62,18 +62,19 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// A name that no other process or thread uses, in the same folder so that the rename stays on one file system.
+// A name that no other process or thread uses, in the same folder so that the rename stays on one file system. Process numbers would not do:
+// containers on one disk have the same ones.
 fs::path TemporaryBeside(const fs::path& file) {
-  static std::atomic<unsigned> counter{0};
-  std::string name = ".";
-  name.append(file.filename().string()).append(".tmp.").append(std::to_string(getpid())).append(".").append(std::to_string(counter.fetch_add(1)));
-  return FolderOf(file) / name;
+  std::random_device device;
+  const std::string number = HashHex(std::to_string(getpid()) + "." + std::to_string(device()) + "." + std::to_string(device()));
+  return FolderOf(file) / ("." + file.filename().string() + ".tmp." + number);
 }
 
-// 0 or the error number.
-int WriteAndSync(const fs::path& file, std::string_view content) {
+// 0 or the error number. *created: whether there is now a file of this process.
+int WriteAndSync(const fs::path& file, std::string_view content, bool* created) {
   Descriptor out(file, O_WRONLY | O_CREAT | O_EXCL);
-  if (out.value() < 0) return errno;
+  *created = out.value() >= 0;
+  if (!*created) return errno;
   while (!content.empty()) {
     const ssize_t n = write(out.value(), content.data(), content.size());
     if (n < 0 && errno == EINTR) continue;
@@ -108,10 +109,11 @@ std::string ReadFile(const fs::path& file) {
 
 void WriteFileAtomically(const fs::path& file, std::string_view content) {
   const fs::path temporary = TemporaryBeside(file);
-  int code = WriteAndSync(temporary, content);
+  bool created = false;
+  int code = WriteAndSync(temporary, content, &created);
   if (code == 0 && rename(temporary.c_str(), file.c_str()) != 0) code = errno;
   if (code != 0) {
-    unlink(temporary.c_str());
+    if (created) unlink(temporary.c_str());
     ThrowFileError(file, "cannot write", code);
   }
   SyncPath(FolderOf(file));
@@ -132,8 +134,9 @@ void RequireWritableFolder(const fs::path& folder) {
   if (error) ThrowFileError(folder, "cannot create the folder", error.value());
   if (!fs::is_directory(folder)) throw InputError(folder, "is a file, but a folder is needed", "Choose another folder with -o");
   const fs::path probe = TemporaryBeside(folder / "probe");
-  const int code = WriteAndSync(probe, "probe");
-  unlink(probe.c_str());
+  bool created = false;
+  const int code = WriteAndSync(probe, "probe", &created);
+  if (created) unlink(probe.c_str());
   if (code != 0) ThrowFileError(folder, "cannot write into the folder", code);
 }
 

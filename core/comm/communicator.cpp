@@ -61,6 +61,11 @@ Message Communicator::Receive() {
   }
 }
 
+std::string Communicator::NameOf(int rank) const {
+  const std::string host = HostOf(rank);
+  return "rank " + std::to_string(rank) + (host.empty() ? "" : " on " + host);
+}
+
 std::unique_ptr<Communicator> Connect() {
   if (UnderMpiLauncher()) return ConnectMpi();
   return std::make_unique<SingleCommunicator>();

@@ -12,6 +12,9 @@
 
 namespace skyquilt::comm {
 
+// The job ended because a rank stood still: run it again, it resumes (skyquilt-mpirun does).
+inline constexpr int kStandstillStatus = 75;
+
 struct Message {
   int source = 0;
   int tag = 0;
@@ -25,6 +28,12 @@ class Communicator {
   virtual int size() const = 0;
   // Number of ranks on this node, including this one.
   virtual int local_size() const = 0;
+  // The machine of a rank; empty where there is only one.
+  virtual std::string HostOf(int /*rank*/) const { return ""; }
+  // "rank 2 on node7", for messages.
+  std::string NameOf(int rank) const;
+  // On rank 0: for how long a rank may stand still before the job ends with kStandstillStatus (life_signs.h); 0: for ever.
+  virtual void EndAfterStandstill(double /*seconds*/) {}
   // Messages of the same source and tag arrive in order. Does not wait for the receiver; a rank may send to itself. tag: 0 to 32767; at most 2 GiB.
   // Throws std::runtime_error when the connection fails.
   virtual void Send(int destination, int tag, const std::string& bytes) = 0;

@@ -109,21 +109,30 @@ std::string PixelCacheHeader(const std::string& index_text, size_t index_offset)
   return header;
 }
 
+std::optional<PixelCache> PixelCache::IfBuilt(const std::filesystem::path& file, const std::string& identity) {
+  if (!std::filesystem::is_regular_file(file)) return std::nullopt;
+  PixelCache cache;
+  cache.map_ = base::MemoryMap(file);
+  std::optional<PixelCacheIndex> index = ReadPixelCacheIndex(cache.map_.bytes());
+  if (!index || base::HashHex(index->key) != identity) return std::nullopt;
+  cache.entries_ = std::move(index->entries);
+  cache.identity_ = identity;
+  return cache;
+}
+
 PixelCache PixelCache::Open(const std::filesystem::path& file, const std::vector<PixelSource>& sources, int image_width, base::ThreadPool& threads) {
   const std::string key = PixelCacheKey(sources, image_width);
   for (int attempt = 0; attempt < 2; ++attempt) {
-    if (std::filesystem::is_regular_file(file)) {
-      PixelCache cache;
-      cache.map_ = base::MemoryMap(file);
-      std::optional<PixelCacheIndex> index = ReadPixelCacheIndex(cache.map_.bytes());
-      if (index && index->key == key && index->entries.size() == sources.size()) {
-        cache.entries_ = std::move(index->entries);
-        return cache;
-      }
-    }
+    std::optional<PixelCache> cache = IfBuilt(file, base::HashHex(key));
+    if (cache && cache->size() == sources.size()) return *std::move(cache);
     if (attempt == 0) BuildPixelCache(file, key, sources, image_width, threads);
   }
   throw base::InputError(file, "changed while it was being opened", "Run only one command at a time on this project folder");
+}
+
+PixelCache PixelCache::OpenBuilt(const std::filesystem::path& file, const std::string& identity) {
+  if (std::optional<PixelCache> cache = IfBuilt(file, identity)) return *std::move(cache);
+  throw base::InputError(file, "is missing here, or is not the file that rank 0 sees", "All ranks must see the same project folder");
 }
 
 std::span<const uint8_t> PixelCache::Rgb(size_t photo) const {

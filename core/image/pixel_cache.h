@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,12 @@ class PixelCache {
   // Throws base::InputError for unreadable photos (lists all of them) and for a full disk (the partial file is removed).
   static PixelCache Open(const std::filesystem::path& file, const std::vector<PixelSource>& sources, int image_width, base::ThreadPool& threads);
 
+  // Opens a file that Open has made, perhaps on another machine that sees other times of the photos, which are not looked at. identity: of that
+  // cache. Throws base::InputError when the file is another one.
+  static PixelCache OpenBuilt(const std::filesystem::path& file, const std::string& identity);
+
+  // Changes whenever Open would build the cache anew.
+  const std::string& identity() const { return identity_; }
   size_t size() const { return entries_.size(); }
   int Width(size_t photo) const { return entries_[photo].width; }
   int Height(size_t photo) const { return entries_[photo].height; }
@@ -56,8 +63,11 @@ class PixelCache {
   std::span<const uint8_t> Mask(size_t photo) const;
 
  private:
+  static std::optional<PixelCache> IfBuilt(const std::filesystem::path& file, const std::string& identity);
+
   base::MemoryMap map_;
   std::vector<Entry> entries_;
+  std::string identity_;
   bool streaming_ = false;
 };
 

@@ -163,16 +163,16 @@ def houses_project(skyquilt, project):
     return copied(shared(skyquilt, "houses", make), project), survey
 
 
-def arrays_of(skyquilt, file):
-    """Digest of every array. Attributes, such as seconds, may differ and are left out."""
-    described = json.loads(skyquilt.call("info", file, "--json"))
-    return {array["name"]: array["xxh64"] for array in described["arrays"]}
+def arrays_of(skyquilt, *files):
+    """Digest of every array, for each file. Attributes, such as seconds, may differ and are left out."""
+    described = json.loads(skyquilt.call("info", *files, "--json"))
+    return [{array["name"]: array["xxh64"] for array in one["arrays"]} for one in ([described] if len(files) == 1 else described.values())]
 
 
 def state_of(skyquilt, project):
     files = sorted(p for p in (project / "checkpoints").glob("*.h5"))
     expect(len(files) == 3, f"{project} has {[p.name for p in files]} instead of the context and two blocks")
-    return {p.name: arrays_of(skyquilt, p) for p in files}
+    return dict(zip([p.name for p in files], arrays_of(skyquilt, *files)))
 
 
 def children(pid):

@@ -131,7 +131,7 @@ def files_in(folder, but):
 
 
 def fields_of(skyquilt, project):
-    files = state_of(skyquilt, project) | {"scene.h5": arrays_of(skyquilt, project / "scene.h5")}
+    files = state_of(skyquilt, project) | {"scene.h5": arrays_of(skyquilt, project / "scene.h5")[0]}
     return {f"{file} {array}": digest for file, arrays in files.items() for array, digest in arrays.items()}
 
 

@@ -1,12 +1,33 @@
-"""scripts/skyquilt-mpirun: restarts after a lost rank, gives up after the last restart, does not retry final results and passes on signals."""
+"""scripts/skyquilt-mpirun: restarts after a rank that was lost or stands still, gives up after the last restart, does not retry final results and passes
+on signals. Machines that see different disks."""
 import os
 import pathlib
+import shutil
 import signal
+import socket
 import subprocess
+import time
 
 from harness import QUICK_TRAIN, children, expect, main, small_project, state_of, wait_for
 
 LAUNCHER = str(pathlib.Path(__file__).resolve().parents[2] / "scripts" / "skyquilt-mpirun")
+
+
+def check_other_disk(skyquilt, folder, project):
+    """Rank 1 has a copy of the project under the same path, as on a machine whose disk is not the shared one."""
+    copy = shutil.copytree(project, folder / "copy", symlinks=True)
+    mounting = f"mount --bind '{copy}' '{project}'"
+    if subprocess.run(["unshare", "-m", "sh", "-c", mounting], stderr=subprocess.DEVNULL).returncode != 0:
+        print("a disk that is not shared: skipped, no right to mount")
+        return
+    words = [skyquilt.program, "train", str(project), *QUICK_TRAIN]
+    began = time.monotonic()
+    done = subprocess.run(["mpirun", "--oversubscribe", "-n", "1", *words, ":", "-n", "1", "unshare", "-m", "sh", "-c", mounting + ' && exec "$@"', "sh", *words],
+                          env=skyquilt.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)
+    expect(done.returncode == 3 and time.monotonic() - began < 60, f"ended with {done.returncode}:\n{done.stdout}")
+    for words in (str(project / "checkpoints"), f"rank 1 on {socket.gethostname()}", "disk that all machines share"):
+        expect(words in done.stdout, f"'{words}' is missing:\n{done.stdout}")
+    expect("--restart" not in done.stdout and not list(project.glob("checkpoints/*.h5")), f"it trained, or advises to train anew:\n{done.stdout}")
 
 
 def test(skyquilt, folder):
@@ -34,6 +55,19 @@ def test(skyquilt, folder):
     text = log.read_text()
     expect("new start 1 of 2" in text and "ended with status 0 after 1 new start" in text, text)
     expect(state_of(skyquilt, project) == state_of(skyquilt, whole), "killed and started again differs from undisturbed")
+
+    # A rank stands still: it is named with its host, and the job ends and goes on.
+    project = small_project(skyquilt, folder / "stalled")
+    process, log = start("stalled", "-n", "3", "--oversubscribe", skyquilt.program, "train", str(project), *QUICK_TRAIN, "--set", "run.rank_timeout_s=4")
+    wait_for(lambda: any(project.glob("checkpoints/block_*.h5")), "first checkpoint of a block", process)
+    os.kill(ranks_of(process.pid)[-1], signal.SIGSTOP)
+    expect(process.wait(timeout=300) == 0, log.read_text())
+    text = log.read_text()
+    for words in (f"rank 2 on {socket.gethostname()} gives no sign of life", f"rank 2 on {socket.gethostname()} stood still", "status 75", "new start 1 of 2"):
+        expect(words in text, f"'{words}' is missing:\n{text}")
+    expect(state_of(skyquilt, project) == state_of(skyquilt, whole), "after a standstill the result differs from undisturbed")
+
+    check_other_disk(skyquilt, folder, small_project(skyquilt, folder / "disk"))
 
     # A signal to the launcher makes the ranks save and end.
     project = small_project(skyquilt, folder / "stopped")

@@ -1,14 +1,18 @@
 // Sends messages between ranks in every way the program does. Ends with a status other than 0 at the first mismatch.
 //   traffic <n>     all exchanges, for n ranks
 //   traffic abort   the last rank aborts with status 4 while the others wait for a message
+//   traffic stop N  rank N stops itself (SIGSTOP), the others compute: the job must end with kStandstillStatus
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -128,6 +132,14 @@ int main(int argc, char** argv) {
       if (ranks->rank() == ranks->size() - 1) ranks->Abort(4);
       ranks->Receive();
       return 1;
+    }
+    if (argc > 2 && std::string(argv[1]) == "stop") {
+      ranks->EndAfterStandstill(4.0);
+      // Every rank has heard of the limit.
+      std::this_thread::sleep_for(std::chrono::seconds(3));
+      if (ranks->rank() == std::stoi(argv[2])) raise(SIGSTOP);
+      std::this_thread::sleep_for(std::chrono::seconds(30));
+      ranks->Abort(1);
     }
     const int expected = argc > 1 ? std::stoi(argv[1]) : 1;
     Require(ranks->size() == expected, *ranks, "expected " + std::to_string(expected) + " ranks");

@@ -55,7 +55,7 @@ class SurfaceTruth : public testing::Test {
 // What the normals of the depth image say, away from edges, is what the true normals say; towns have more plane surfaces than edges.
 TEST_F(SurfaceTruth, NormalsAgreeWithDepth) {
   std::map<SurfaceClass, std::array<int, 2>> agree;  // of all, those within 2 degrees
-  for (size_t i = 0; i < photos_->size(); i += photos_->size() / 6) {
+  for (size_t i = 0; i < photos_->size(); i += photos_->size() / 3) {
     const geo::Rigid3d& pose = (*photos_)[i].cam_from_enu;
     const SurfaceImages seen = Surfaces(pose, *threads_);
     const image::ImageF of_depth = scene::NormalsOfDepth(place_->camera, pose, seen.z_depth, {}, *threads_);

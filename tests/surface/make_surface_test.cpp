@@ -187,7 +187,7 @@ TEST_F(MakeSurfaceTest, LittleMemoryGivesTheSameMeshAndTooLittleAnAnswer) {
   MakeSurface(input, threads_);
   double least = 1e9;
   // Halve it until pieces must be smaller, but none fails.
-  for (double memory = 512e6; memory > 1e4; memory /= 2.0) {
+  for (double memory = 64e6; memory > 1e4; memory /= 2.0) {
     input = Input("small");
     input.options.voxel_gsd = 1.0;
     input.memory_bytes = memory;

@@ -40,7 +40,7 @@ void WriteTourVideo(const Tour& tour, const Heights* heights, const PictureField
   }
   video.Close();
   progress.Finish();
-  base::LogInfo("video of the tour: {:.0f} s, {}", static_cast<double>(frames.size()) / spec.fps, video.encoder());
+  base::LogInfo("video of the tour: {:.0f} s", static_cast<double>(frames.size()) / spec.fps);
 }
 
 }  // namespace skyquilt::tour

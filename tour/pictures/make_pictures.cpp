@@ -16,7 +16,7 @@
 namespace skyquilt::tour {
 namespace {
 
-// Pictures, and what a killed process left of one: ".<name>.tmp.<process>.<number>".
+// Pictures, and what a killed process left of one: ".<name>.tmp.<number>".
 bool IsOfPictures(const std::string& name) {
   constexpr std::string_view kEnding = ".picture";
   const size_t ending = name.find(kEnding);

@@ -128,7 +128,7 @@ TEST(DrawModel, FrontCornersAreDrawnAndNothingElseChanges) {
       for (int x = 0; x < drawing.drawn.width; ++x) {
         const uint8_t* rgb = drawing.drawn.At(x, y);
         if (rgb[0] == 128 && rgb[1] == 128 && rgb[2] == 128) continue;
-        ++changed;
+        if (++changed % 5 != 0) continue;  // each costs a search among all pieces
         double nearest = 1e9;
         for (const ViewedPiece& piece : pieces)
           nearest = std::min(nearest, DistanceTo(piece, Eigen::Vector2d(drawing.part.left + x + 0.5, drawing.part.top + y + 0.5)));

@@ -71,7 +71,7 @@ class RankTasksTest : public testing::Test {
 TEST_F(RankTasksTest, EveryTaskIsDoneOnce) {
   std::vector<prepare::PoseTask> tasks;
   for (int i = 0; i < 5; ++i) tasks.emplace_back(Part(i));
-  RankTasks ranks(root_, {.threads = 4}, false, true);
+  RankTasks ranks(root_, {.threads = 4}, folder_.path(), false, true);
   EXPECT_EQ(ranks.size(), 2);
   EXPECT_EQ(ranks.threads(), 2);  // of one machine's four
   double done = 0.0;
@@ -85,7 +85,7 @@ TEST_F(RankTasksTest, EveryTaskIsDoneOnce) {
 
 TEST_F(RankTasksTest, AFailureNamesTheRankAndItsLog) {
   base::WriteFileAtomically(folder_ / "fail", "photo 0.jpg");
-  RankTasks ranks(root_, {.threads = 2}, false, true);
+  RankTasks ranks(root_, {.threads = 2}, folder_.path(), false, true);
   const std::vector<prepare::PoseTask> tasks = {Part(0)};
   const std::string error = InputErrorOf([&] { ranks.Run(tasks, [](double) {}); });
   EXPECT_NE(error.find("rank 1 on "), std::string::npos) << error;

@@ -102,6 +102,37 @@ TEST_F(Coordinate, EveryBlockIsTrainedExactlyOnceOnAnyNumberOfRanks) {
   }
 }
 
+// An error of rank 0 itself, such as a full disk: the other ranks stop and return although they get no more than the end of the training.
+TEST_F(Coordinate, AnErrorOfRankZeroStopsTheOthers) {
+  FakeNetwork network(3);
+  std::vector<std::thread> ranks;
+  const FieldTrainer trainer = [](const FieldJob& job, const worker::Reporter& report) {
+    for (int step = 0; job.block == 1; ++step) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      report({});
+      base::ThrowIfCancelled();
+      if (step > 60'000) throw std::logic_error("it trains on");
+    }
+    return Good(job);
+  };
+  for (int rank = 1; rank < 3; ++rank) {
+    ranks.emplace_back([&network, &trainer, rank] {
+      FakeRank comm(network, rank);
+      ServeBlocks(comm, trainer, 1);
+    });
+  }
+  FakeRank comm(network, 0);
+  BlockQueue queue({Named(0, 1.0), Named(1, 1.0)}, {.steps = 3});
+  const CoordinateHooks hooks{
+      .now_s = [] { return 0.0; },
+      .handed_out = [](const FieldJob&, int) {},
+      .status = [](const FieldJob&, const worker::TrainStatus&) {},
+      .finished = [](const FieldOutcome&, bool) { throw base::InputError("timings.json", "cannot write", "Free some space"); }};
+  EXPECT_THROW(CoordinateBlocks(comm, queue, trainer, 1, hooks), base::InputError);
+  for (int rank = 1; rank < 3; ++rank) comm.Send(rank, kTagDone, "");
+  for (std::thread& thread : ranks) thread.join();
+}
+
 TEST_F(Coordinate, RankZeroTrainsOnlyWhenAlone) {
   const FieldTrainer trainer = [](const FieldJob& job, const worker::Reporter&) { return Good(job); };
   for (const auto& [name, rank] : Play(3, {Named(0, 1.0), Named(1, 1.0), Named(2, 1.0)}, trainer).rank_of) EXPECT_NE(rank, 0) << name;

@@ -24,6 +24,7 @@ class FakeRank : public comm::Communicator {
   int rank() const override { return rank_; }
   int size() const override { return static_cast<int>(network_.inbox.size()); }
   int local_size() const override { return size(); }
+  std::string HostOf(int rank) const override { return "node" + std::to_string(rank); }
   void Send(int destination, int tag, const std::string& bytes) override {
     const std::lock_guard lock(network_.mutex);
     network_.inbox[static_cast<size_t>(destination)].push_back({rank_, tag, bytes});

@@ -48,6 +48,16 @@ TEST(File, ErrorsNameTheFileAndHowToFixIt) {
   EXPECT_THROW(SyncPath(missing), InputError);
 }
 
+// Two containers on one disk have processes of the same number.
+TEST(File, TemporaryNamesDoNotDependOnTheProcessAlone) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "file";
+  for (int i = 0; i < 50; ++i) std::ofstream(folder.path() / (".file.tmp." + std::to_string(getpid()) + "." + std::to_string(i))) << "another's";
+  WriteFileAtomically(file, "mine");
+  EXPECT_EQ(ReadFile(file), "mine");
+  EXPECT_EQ(CountEntries(folder.path()), 51U) << "a file that another process made was removed";
+}
+
 TEST(File, AFolderIsNotReplacedByAFile) {
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "taken" / "inner");

@@ -94,6 +94,18 @@ TEST_F(PixelCacheTest, SinglePixelsAreTheSameMappedAndStreamed) {
   }
 }
 
+// As a rank on another machine opens it, which may see other times of the photos, or other photos.
+TEST_F(PixelCacheTest, OpensByItsIdentityWithoutThePhotos) {
+  const PixelCache built = Open(40);
+  for (const PixelSource& source : sources_) std::filesystem::remove(source.photo);
+  const PixelCache opened = PixelCache::OpenBuilt(file_, built.identity());
+  ASSERT_EQ(opened.size(), built.size());
+  EXPECT_TRUE(std::ranges::equal(opened.Rgb(4), built.Rgb(4)));
+  EXPECT_EQ(opened.identity(), built.identity());
+  EXPECT_THROW(PixelCache::OpenBuilt(file_, "another"), base::InputError);
+  EXPECT_THROW(PixelCache::OpenBuilt(folder_.path() / "nowhere", built.identity()), base::InputError);
+}
+
 TEST_F(PixelCacheTest, NeverEnlarges) {
   for (const int width : {0, -1, 60, 5000}) {
     const PixelCache cache = Open(width);

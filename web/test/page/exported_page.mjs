@@ -130,10 +130,15 @@ try {
   const remote = await open(browser, link, SIZE);
   await remote.page.waitForFunction(() => window.__skyquilt.state().map !== null);
   figures.ways_m = [];
-  for (let i = 1; i <= LAST; i += 1) {
-    const places = await walk(remote.page, () => remote.page.keyboard.press("ArrowRight"), i);
-    figures.ways_m.push(checkWay(surface, places, `to stop ${i + 1}`, expect));
+  const first = await walk(remote.page, () => remote.page.keyboard.press("ArrowRight"), 1);
+  figures.ways_m.push(checkWay(surface, first, "to stop 2", expect));
+  // Without animation to the one before the last; tour_page.mjs has walked over the house.
+  for (let i = 2; i < LAST; i += 1) {
+    await remote.page.keyboard.press("ArrowRight");
+    await arrived(remote.page, i);
   }
+  const last = await walk(remote.page, () => remote.page.keyboard.press("ArrowRight"), LAST);
+  figures.ways_m.push(checkWay(surface, last, "to the last stop", expect));
   const errors = await remote.page.evaluate(() => window.__skyquilt.state().notices.map(({ text }) => text));
   expect(errors.length === 0, `messages: ${errors}`);
   expect((await remote.page.evaluate(() => window.hacked)) === undefined, "a script in a text was run");

@@ -242,7 +242,7 @@ try {
   await checkHouse(page, description);
   const tools = { width: WIDTH, height: HEIGHT, out, expect, figures, lookAt, settled, rendered };
   await checkThings(page, truthHouses(truth)[0], tools);
-  await page.setViewportSize({ width: 1280, height: 800 });
+  await page.setViewportSize({ width: 1024, height: 640 });
   await checkTools(page, description);
   await checkBuildings(page, description);
   await checkPhoto(page, description);

@@ -6,7 +6,7 @@ import re
 import shutil
 import signal
 
-from harness import expect, main, metrics_of, small_survey, wait_for
+from harness import expect, kill_group, main, metrics_of, small_survey, wait_for
 
 # Keys of metrics.json about the evaluation itself, not about the scene.
 OWN = ("evaluate_seconds", "evaluate_peak_rss_bytes", "date", "render_seconds", "rendering")
@@ -33,6 +33,22 @@ def without_normals(scores):
     kept["classes"] = {name: {key: value for key, value in one.items() if not key.startswith(("density_", "head_"))}
                        for name, one in scores["classes"].items()}
     return kept
+
+
+def resume_evaluation(skyquilt, project, options, expected):
+    """An evaluation that is killed goes on after the last photo that it has saved, and ends with the same scores and pictures."""
+    pictures = pictures_of(project / "report" / "images")
+    progress = project / "cache" / "evaluate_progress.bin"
+    expect(not progress.exists(), "a finished evaluation leaves the file of its progress")
+    process = skyquilt.start("evaluate", project, "--restart", *options, "--set", "evaluate.save_every_s=0.001")
+    wait_for(progress.exists, "first saved photo", process)
+    kill_group(process)
+    expect(not (project / "report" / "metrics.json").exists(), "the evaluation was over before it could be killed")
+    text = skyquilt.call("evaluate", project, *options, "--set", "evaluate.save_every_s=20")
+    expect(re.search(r"evaluate: continues after [1-9]\d* of \d+ photos", text), f"the evaluation does not continue:\n{text}")
+    expect(scores_of(project) == expected, "killed and resumed gives other scores")
+    expect(pictures_of(project / "report" / "images") == pictures, "killed and resumed gives other pictures")
+    expect(not progress.exists(), "a resumed evaluation leaves the file of its progress")
 
 
 def pictures_of(folder):
@@ -107,6 +123,7 @@ def test(skyquilt, folder):
     expect(medians_of(with_normals, "head") == [], "normals are predicted without a head")
     expect(without_normals(with_normals) == without_normals(expected), "scoring the field's normals changes other scores")
     expected = with_normals
+    resume_evaluation(skyquilt, project, field_normals, expected)
     for ranks in (2, 4):
         shutil.rmtree(project / "report")
         skyquilt.call("evaluate", project, "--restart", *field_normals, ranks=ranks)

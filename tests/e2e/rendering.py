@@ -6,7 +6,7 @@ import re
 import shutil
 import signal
 
-from harness import expect, kill_group, main, metrics_of, small_survey, wait_for
+from harness import expect, main, metrics_of, small_survey, wait_for
 
 # Keys of metrics.json about the evaluation itself, not about the scene.
 OWN = ("evaluate_seconds", "evaluate_peak_rss_bytes", "date", "render_seconds", "rendering")
@@ -36,19 +36,22 @@ def without_normals(scores):
 
 
 def resume_evaluation(skyquilt, project, options, expected):
-    """An evaluation that is killed goes on after the last photo that it has saved, and ends with the same scores and pictures."""
+    """An evaluation that is killed or interrupted goes on after the last photo that it has saved, and ends with the same scores and pictures."""
     pictures = pictures_of(project / "report" / "images")
     progress = project / "cache" / "evaluate_progress.bin"
     expect(not progress.exists(), "a finished evaluation leaves the file of its progress")
-    process = skyquilt.start("evaluate", project, "--restart", *options, "--set", "evaluate.save_every_s=0.001")
-    wait_for(progress.exists, "first saved photo", process)
-    kill_group(process)
-    expect(not (project / "report" / "metrics.json").exists(), "the evaluation was over before it could be killed")
-    text = skyquilt.call("evaluate", project, *options, "--set", "evaluate.save_every_s=20")
-    expect(re.search(r"evaluate: continues after [1-9]\d* of \d+ photos", text), f"the evaluation does not continue:\n{text}")
-    expect(scores_of(project) == expected, "killed and resumed gives other scores")
-    expect(pictures_of(project / "report" / "images") == pictures, "killed and resumed gives other pictures")
-    expect(not progress.exists(), "a resumed evaluation leaves the file of its progress")
+    for stop, status in ((signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, 130)):
+        process = skyquilt.start("evaluate", project, "--restart", *options, "--set", "evaluate.save_every_s=0.001")
+        wait_for(progress.exists, "first saved photo", process)
+        process.send_signal(stop)
+        text, _ = process.communicate(timeout=120)
+        expect(process.returncode == status, f"an evaluation that got signal {stop} ends with {process.returncode}:\n{text}")
+        expect(not (project / "report" / "metrics.json").exists(), "the evaluation was over before it could be stopped")
+        text = skyquilt.call("evaluate", project, *options, "--set", "evaluate.save_every_s=20")
+        expect(re.search(r"evaluate: continues after [1-9]\d* of \d+ photos", text), f"the evaluation does not continue:\n{text}")
+        expect(scores_of(project) == expected, "stopped and resumed gives other scores")
+        expect(pictures_of(project / "report" / "images") == pictures, "stopped and resumed gives other pictures")
+        expect(not progress.exists(), "a resumed evaluation leaves the file of its progress")
 
 
 def pictures_of(folder):

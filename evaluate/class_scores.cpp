@@ -65,6 +65,28 @@ void ClassErrors::Add(const HeldOutPhoto& task, const PhotoResult& findings) {
   }
 }
 
+void ClassErrors::Save(base::BytePacker* out) const {
+  for (const Errors& errors : errors_) {
+    out->Add(errors.depth_m);
+    out->Add(errors.normal_deg);
+    out->Add(errors.density_normal_deg);
+    out->Add(errors.head_normal_deg);
+    out->Add(errors.missing);
+  }
+  out->Add(any_);
+}
+
+void ClassErrors::Load(base::ByteUnpacker* in) {
+  for (Errors& errors : errors_) {
+    in->Take(&errors.depth_m);
+    in->Take(&errors.normal_deg);
+    in->Take(&errors.density_normal_deg);
+    in->Take(&errors.head_normal_deg);
+    in->Take(&errors.missing);
+  }
+  in->Take(&any_);
+}
+
 std::vector<ClassScore> ClassErrors::Result() const {
   std::vector<ClassScore> scores;
   if (!any_) return scores;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/packed_bytes.h"
 #include "core/survey/surface_class.h"
 #include "evaluate/metrics.h"
 #include "evaluate/photo_scorer.h"
@@ -22,6 +23,9 @@ class ClassErrors {
   // One entry for each of roof, wall, ground (roads included), road and tree, in this order; figures that no pixel measured are NaN. Empty if no
   // photo had true classes.
   std::vector<ClassScore> Result() const;
+  // All that was added, so that other ClassErrors can go on from here.
+  void Save(base::BytePacker* out) const;
+  void Load(base::ByteUnpacker* in);
 
  private:
   struct Errors {

@@ -17,6 +17,7 @@
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/kept_points.h"
 #include "evaluate/report_writer.h"
+#include "evaluate/score_saver.h"
 #include "evaluate/scored_pixels.h"
 #include "evaluate/summary.h"
 #include "evaluate/surface_scorer.h"
@@ -52,24 +53,50 @@ std::unique_ptr<SurfaceScorer> SurfaceOf(const EvaluateInput& input) {
   }
 }
 
-// made: null without a surface.
-Scores ScorePhotos(const EvaluateInput& input, const std::vector<int>& held_out, HeldOutScorer& scorer, SurfaceScorer* made, ReportPictures& pictures,
-                   base::ThreadPool& threads) {
+Scores NoScores(const EvaluateInput& input, const HeldOutScorer& scorer) {
   Scores scores(scorer.n_boxes());
   scores.flat_roofs = FlatRoofPoints(FlatRoofsOf(*input.survey));
-  base::Progress progress("evaluate", static_cast<double>(held_out.size()), "photos");
-  for (const int photo : held_out) {
-    base::ThrowIfCancelled();
-    ScoredPhoto scored = scorer.Score(photo, pictures.ShowsNormal(photo), threads);
-    if (made != nullptr) scored.mesh = made->Score(scored, threads);
-    pictures.Write(scored);
-    if (!input.options.scored_pixels_folder.empty()) WriteScoredPixels(scored, input.options.scored_pixels_folder);
-    scores.Add(scored);
-    progress.Advance(1.0, fmt::format("{} {:.2f} dB", scored.findings.score.name, scored.findings.score.psnr_db));
-  }
-  scores.exposure_seams = MeasureExposureSeams(*input.scene, scorer.training(), threads);
-  progress.Finish(fmt::format("PSNR {:.2f} dB, coverage {:.1f} %", scores.Psnr(), 100.0 * scores.Coverage()));
   return scores;
+}
+
+// What takes part in the scoring of the photos.
+struct PhotoLoop {
+  const EvaluateInput& input;
+  HeldOutScorer& scorer;
+  SurfaceScorer* made;  // null without a surface
+  ReportPictures& pictures;
+  ScoreSaver& saver;
+  Scores& scores;
+};
+
+void ScoreAndAdd(const PhotoLoop& loop, int photo, base::ThreadPool& threads) {
+  ScoredPhoto scored = loop.scorer.Score(photo, loop.pictures.ShowsNormal(photo), threads);
+  if (loop.made != nullptr) scored.mesh = loop.made->Score(scored, threads);
+  loop.pictures.Write(scored);
+  const std::filesystem::path& pixels_folder = loop.input.options.scored_pixels_folder;
+  if (!pixels_folder.empty()) WriteScoredPixels(scored, pixels_folder);
+  loop.scores.Add(scored);
+}
+
+// Goes on after the photos that an earlier evaluation has scored.
+void ScorePhotos(const PhotoLoop& loop, const std::vector<int>& held_out, base::ThreadPool& threads) {
+  loop.saver.Resume();
+  const std::vector<PhotoScore>& photos = loop.scores.photos;
+  base::Progress progress("evaluate", static_cast<double>(held_out.size()), "photos", static_cast<double>(photos.size()));
+  try {
+    while (photos.size() < held_out.size()) {
+      base::ThrowIfCancelled();
+      ScoreAndAdd(loop, held_out[photos.size()], threads);
+      loop.saver.SaveWhenDue();
+      progress.Advance(1.0, fmt::format("{} {:.2f} dB", photos.back().name, photos.back().psnr_db));
+    }
+    loop.scores.exposure_seams = MeasureExposureSeams(*loop.input.scene, loop.scorer.training(), threads);
+  } catch (const base::Interrupted&) {
+    // Thrown while a photo is rendered, before anything of it is added.
+    loop.saver.Save();
+    throw;
+  }
+  progress.Finish(fmt::format("PSNR {:.2f} dB, coverage {:.1f} %", loop.scores.Psnr(), 100.0 * loop.scores.Coverage()));
 }
 
 }  // namespace
@@ -85,17 +112,20 @@ Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   ReportPictures pictures(input, held_out);
   const std::unique_ptr<SurfaceScorer> made = SurfaceOf(input);
   std::optional<BuildingsReport> found = CollectBuildings(input);
-  const Scores scores = ScorePhotos(input, held_out, scorer, made.get(), pictures, threads);
+  Scores scores = NoScores(input, scorer);
+  ScoreSaver saver(input, held_out, {.scores = &scores, .surface = made ? &made->photos() : nullptr, .pictures = &pictures.written()});
+  ScorePhotos({input, scorer, made.get(), pictures, saver, scores}, held_out, threads);
   if (made) metrics.surface = made->Result(input, scorer, threads);
   if (found) metrics.buildings = ScoreBuildings(found->compared, threads);
   metrics.kept_points = MeasureKeptPoints(*input.scene, *input.survey, *input.pixels, scorer.area().boxes, threads);
-  metrics.evaluate_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  metrics.evaluate_seconds = saver.earlier_s() + std::chrono::duration<double>(Clock::now() - start).count();
 
   Summarise(input, scores, &metrics);
   for (const Warning& warning : metrics.warnings) base::LogWarning("{}. {}", warning.finding, warning.advice);
   std::vector<MarkPicture> marks;
   if (input.options.report_photos > 0) marks = WriteMarkPictures(*input.survey, input.scene, input.ReportFolder(), threads);
   WriteReport(input, metrics, pictures, std::move(marks), found ? &*found : nullptr);
+  saver.Remove();
   return metrics;
 }
 

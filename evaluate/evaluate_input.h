@@ -23,6 +23,9 @@ struct EvaluateInput {
   std::string config_text;                            // TOML; empty: the configuration stored in the scene
   geo::Vertical vertical = geo::Vertical::kAsTagged;  // of the heights in the project's files, which the report repeats
   EvaluateOptions options;
+  // Where the scores so far are saved, for an evaluation of the same key to continue from; its folder must exist. Empty: they are not saved.
+  std::filesystem::path progress_file = {};
+  std::string progress_key = {};  // names whatever the scores depend on but the list of photos
 
   std::filesystem::path ReportFolder() const { return project_folder / "report"; }
 };

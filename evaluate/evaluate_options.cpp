@@ -23,6 +23,8 @@ std::vector<config::Field<EvaluateOptions>> EvaluateOptions::Fields() {
        "simulated surveys: also score the normals of the density and of the normal head by class; takes longer"},
       {"report_photos", &O::report_photos, Range::AtLeast(0), "held-out photos shown as images in the report, evenly spread; its tables have all"},
       {"report_image_width", &O::report_image_width, Range{16, 65536}, "largest width of the report's images in pixels"},
+      {"save_every_s", &O::save_every_s, Range{1e-3, 1e8},
+       "seconds between savings of the scores so far, after which an interrupted evaluation continues"},
   };
 }
 

@@ -20,6 +20,7 @@ struct EvaluateOptions {
   bool field_normals = false;    // also score normals of the density and of the head; needs true normals
   int report_photos = 40;        // photos shown in the report, evenly spread
   int report_image_width = 960;  // pixels
+  double save_every_s = 20.0;    // between savings of the scores so far; does not change the result
   // Not in the configuration: where a study wants the scored pixels of every photo (scored_pixels.h). Empty: they are not written.
   std::filesystem::path scored_pixels_folder = {};
 

@@ -1,6 +1,8 @@
 #include "evaluate/flat_roofs.h"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -89,6 +91,26 @@ void FlatRoofPoints::Add(const HeldOutPhoto& task, const PhotoResult& findings) 
         last = roof;
         break;
       }
+    }
+  }
+}
+
+void FlatRoofPoints::Save(base::BytePacker* out) const {
+  out->AddCount(points_.size());
+  for (const std::vector<RoofPoint>& roof : points_) {
+    out->AddCount(roof.size());
+    for (const RoofPoint& point : roof) out->Add(std::array{point.rendered.x(), point.rendered.y(), point.rendered.z(), point.true_z_m});
+  }
+}
+
+void FlatRoofPoints::Load(base::ByteUnpacker* in) {
+  using Numbers = std::array<double, 4>;
+  if (in->TakeCount(sizeof(uint64_t)) != areas_.size()) in->Fail();
+  for (std::vector<RoofPoint>& roof : points_) {
+    roof.resize(in->TakeCount(sizeof(Numbers)));
+    for (RoofPoint& point : roof) {
+      const auto [x, y, z, true_z_m] = in->Take<Numbers>();
+      point = {.rendered = {x, y, z}, .true_z_m = true_z_m};
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/packed_bytes.h"
 #include "evaluate/photo_scorer.h"
 
 namespace skyquilt::evaluate {
@@ -48,6 +49,9 @@ class FlatRoofPoints {
   // surface point is in the area of a roof: which pixels count does not depend on the rendering.
   void Add(const HeldOutPhoto& task, const PhotoResult& findings);
   FlatRoofScore Result() const;
+  // The points, so that others of the same areas can go on from here. Load throws base::UnreadableBytes when there are more or fewer areas.
+  void Save(base::BytePacker* out) const;
+  void Load(base::ByteUnpacker* in);
 
  private:
   struct RoofPoint {

@@ -52,7 +52,13 @@ ReportPictures::ReportPictures(const EvaluateInput& input, const std::vector<int
   pictured_ = SelectEvenly(held_out, input.options.report_photos);
   with_mesh_ = SelectEvenly(pictured_, kPhotosWithMesh);
   contrasted_ = ChooseViews(input.scene->info(), *input.survey, held_out);
-  brightness_.views.resize(contrasted_.size());
+  written_.views.resize(contrasted_.size());
+}
+
+BrightnessReport ReportPictures::Brightness() const {
+  BrightnessReport brightness = brightness_;
+  brightness.views = written_.views;
+  return brightness;
 }
 
 bool ReportPictures::ShowsNormal(int photo) const {
@@ -62,16 +68,16 @@ bool ReportPictures::ShowsNormal(int photo) const {
 void ReportPictures::Write(const ScoredPhoto& scored) {
   const PhotoResult& findings = scored.findings;
   const int photo = findings.score.photo;
-  images_.emplace_back();
+  written_.images.emplace_back();
   if (std::find(pictured_.begin(), pictured_.end(), photo) != pictured_.end()) {
     PhotoPixels pixels{&scored.task.photo, &findings.render, &findings.z_depth, findings.scored.data};
-    if (!findings.true_normals.Empty() && n_with_normals_ < kPhotosWithNormals) {
+    if (!findings.true_normals.Empty() && written_.n_with_normals < kPhotosWithNormals) {
       pixels.normals = &findings.normals;
       pixels.true_normals = &findings.true_normals;
-      ++n_with_normals_;
+      ++written_.n_with_normals;
     }
     if (!scored.mesh.Empty() && std::find(with_mesh_.begin(), with_mesh_.end(), photo) != with_mesh_.end()) pixels.mesh = &scored.mesh;
-    images_.back() =
+    written_.images.back() =
         WritePhotoImages(pixels, input_.ReportFolder(), fmt::format("photo_{:05d}", photo), input_.options.report_image_width, kErrorHigh);
   }
   const auto place = std::find(contrasted_.begin(), contrasted_.end(), photo);
@@ -81,7 +87,7 @@ void ReportPictures::Write(const ScoredPhoto& scored) {
 void ReportPictures::WriteView(const ScoredPhoto& scored, size_t view) {
   const PhotoScore& score = scored.findings.score;
   const image::Image8 normal = PictureOf(scored.normal, scored.task.camera.width, scored.task.camera.height);
-  BrightnessView& shown = brightness_.views[view];
+  BrightnessView& shown = written_.views[view];
   shown = WriteBrightnessView(scored.task.photo, scored.findings.render, normal, input_.ReportFolder(), fmt::format("brightness_{}", view),
                               input_.options.report_image_width);
   shown.name = score.name;
@@ -103,8 +109,9 @@ void WriteReport(const EvaluateInput& input, const Metrics& metrics, const Repor
   page.blocks = input.blocks;
   page.training = input.training == nullptr ? &unknown : input.training;
   page.curves = ReadCurves(input.project_folder / "checkpoints", names);
-  page.brightness = &pictures.brightness();
-  page.images = pictures.images();
+  const BrightnessReport brightness = pictures.Brightness();
+  page.brightness = &brightness;
+  page.images = pictures.written().images;
   page.mark_pictures = std::move(marks);
   if (found != nullptr) {
     const buildings::BuildingSet& set = found->compared.set;
@@ -115,7 +122,7 @@ void WriteReport(const EvaluateInput& input, const Metrics& metrics, const Repor
   page.color_ramp = WriteColorRamp(report_folder);
   page.error_high = static_cast<double>(kErrorHigh);
   base::WriteFileAtomically(report_folder / "index.html", BuildReportPage(page));
-  if (!pictures.brightness().Empty()) base::WriteFileAtomically(report_folder / "brightness.json", BrightnessJson(pictures.brightness()));
+  if (!brightness.Empty()) base::WriteFileAtomically(report_folder / "brightness.json", BrightnessJson(brightness));
   RemoveStalePictures(report_folder, page, found);
   base::WriteFileAtomically(report_folder / "metrics.json", MetricsJson(metrics));
 }

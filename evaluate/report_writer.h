@@ -9,6 +9,7 @@
 #include "evaluate/held_out_scorer.h"
 #include "evaluate/metrics.h"
 #include "evaluate/report_page.h"
+#include "evaluate/written_pictures.h"
 
 namespace skyquilt::evaluate {
 
@@ -23,17 +24,18 @@ class ReportPictures {
   // Call for every scored photo in order, also those that are not shown. Throws base::InputError when a file cannot be written.
   void Write(const ScoredPhoto& scored);
 
-  const std::vector<PhotoImages>& images() const { return images_; }  // one per photo, empty where it is not shown
-  const BrightnessReport& brightness() const { return brightness_; }  // views included
+  // What was written so far, to save the list and to go on from a saved one.
+  WrittenPictures& written() { return written_; }
+  const WrittenPictures& written() const { return written_; }
+  BrightnessReport Brightness() const;  // with the views so far
 
  private:
   void WriteView(const ScoredPhoto& scored, size_t view);
 
   const EvaluateInput& input_;
   std::vector<int> pictured_, contrasted_, with_mesh_;
-  std::vector<PhotoImages> images_;
-  int n_with_normals_ = 0;
-  BrightnessReport brightness_;
+  WrittenPictures written_;
+  BrightnessReport brightness_;  // without views
 };
 
 // Writes all other files, pictures of the buildings included (null: none were searched), but those of marks; metrics.json last, so that it exists

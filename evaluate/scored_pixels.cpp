@@ -29,8 +29,12 @@ double SquaredErrorOf(uint8_t value) {
   return std::pow((value - 1) / kErrorSteps, 4.0);
 }
 
+std::filesystem::path ScoredPixelsFile(const std::filesystem::path& folder, const std::string& photo) {
+  return folder / (photo + ".png");
+}
+
 void WriteScoredPixels(const ScoredPhoto& scored, const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / (scored.findings.score.name + ".png");
+  const std::filesystem::path file = ScoredPixelsFile(folder, scored.findings.score.name);
   base::RequireWritableFolder(file.parent_path());
   image::SavePng(ScoredPixels(scored.task.photo, scored.findings.render, scored.findings.scored), file);
 }

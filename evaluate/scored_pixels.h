@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "core/image/image.h"
 #include "evaluate/held_out_scorer.h"
@@ -18,7 +19,9 @@ namespace skyquilt::evaluate {
 image::Image8 ScoredPixels(const image::Image8& photo, const image::Image8& render, const image::Image8& scored);
 // The mean squared error over the colours of a scored pixel; value: at least 1.
 double SquaredErrorOf(uint8_t value);
-// As folder/NAME_OF_THE_PHOTO.png. Throws base::InputError.
+// folder/NAME_OF_THE_PHOTO.png
+std::filesystem::path ScoredPixelsFile(const std::filesystem::path& folder, const std::string& photo);
+// Writes that file. Throws base::InputError.
 void WriteScoredPixels(const ScoredPhoto& scored, const std::filesystem::path& folder);
 
 }  // namespace skyquilt::evaluate

@@ -16,6 +16,19 @@ double MeanOver(const std::vector<PhotoScore>& photos, double PhotoScore::*value
   return MeanOfMeasured(values);
 }
 
+constexpr size_t kFewestBytesPerPhoto = 160;  // of its numbers; names may be short
+
+// Calls visit with every member of a score. The list must be complete: this does not compile otherwise.
+template <typename Score, typename Visit>
+void VisitMembers(Score& score, Visit visit) {
+  auto& [photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_exif_gain_db, psnr_normal_db,
+         ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops, depth_rmse_m,
+         depth_median_abs_m, render_seconds] = score;
+  visit(photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_exif_gain_db, psnr_normal_db,
+        ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops, depth_rmse_m,
+        depth_median_abs_m, render_seconds);
+}
+
 void AddMeans(const Scores& scores, Metrics* metrics) {
   metrics->psnr = scores.Psnr();
   metrics->psnr_normal = MeanOver(scores.photos, &PhotoScore::psnr_normal_db);
@@ -84,6 +97,34 @@ void Scores::Add(const ScoredPhoto& photo) {
   classes.Add(photo.task, findings);
   flat_roofs.Add(photo.task, findings);
   floaters += photo.floaters;
+}
+
+void Scores::Save(base::BytePacker* out) const {
+  out->AddCount(photos.size());
+  for (const PhotoScore& photo : photos) {
+    VisitMembers(photo, [out](const auto&... member) { (out->Add(member), ...); });
+  }
+  out->Add(per_block);
+  out->Add(seams);
+  depth.Save(out);
+  classes.Save(out);
+  flat_roofs.Save(out);
+  out->Add(floaters);
+}
+
+void Scores::Load(base::ByteUnpacker* in) {
+  const size_t n_boxes = per_block.size();
+  photos.resize(in->TakeCount(kFewestBytesPerPhoto));
+  for (PhotoScore& photo : photos) {
+    VisitMembers(photo, [in](auto&... member) { (in->Take(&member), ...); });
+  }
+  in->Take(&per_block);
+  if (per_block.size() != n_boxes) in->Fail();
+  in->Take(&seams);
+  depth.Load(in);
+  classes.Load(in);
+  flat_roofs.Load(in);
+  in->Take(&floaters);
 }
 
 double Scores::Psnr() const {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/base/packed_bytes.h"
 #include "core/metrics/depth_errors.h"
 #include "core/metrics/psnr.h"
 #include "evaluate/class_scores.h"
@@ -32,6 +33,10 @@ struct Scores {
   void Add(const ScoredPhoto& photo);
   double Psnr() const;      // dB, mean over the photos; NaN when none has one
   double Coverage() const;  // covered share of all used pixels; NaN when none is used
+  // All that Add has added, so that other Scores of the same boxes and roofs can go on from here. Load throws base::UnreadableBytes for another
+  // number of boxes or roofs.
+  void Save(base::BytePacker* out) const;
+  void Load(base::ByteUnpacker* in);
 };
 
 // Metrics known before any photo is scored: survey, training, machine.

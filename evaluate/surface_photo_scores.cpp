@@ -58,6 +58,22 @@ image::Image8 SurfacePhotoErrors::Add(const HeldOutPhoto& task, const PhotoResul
   return shown;
 }
 
+void SurfacePhotoErrors::Save(base::BytePacker* out) const {
+  for (const std::vector<double>* of_photos : {&psnr_, &psnr_field_, &psnr_where_mesh_, &psnr_field_where_mesh_}) out->Add(*of_photos);
+  out->Add(pixels_);
+  out->Add(missing_);
+  out->Add(classes_);
+  out->Add(any_class_);
+}
+
+void SurfacePhotoErrors::Load(base::ByteUnpacker* in) {
+  for (std::vector<double>* of_photos : {&psnr_, &psnr_field_, &psnr_where_mesh_, &psnr_field_where_mesh_}) in->Take(of_photos);
+  in->Take(&pixels_);
+  in->Take(&missing_);
+  in->Take(&classes_);
+  in->Take(&any_class_);
+}
+
 void SurfacePhotoErrors::Fill(SurfaceScores* scores) const {
   scores->psnr = MeanOfMeasured(psnr_);
   scores->psnr_field = MeanOfMeasured(psnr_field_);

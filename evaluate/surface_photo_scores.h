@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/packed_bytes.h"
 #include "core/metrics/psnr.h"
 #include "core/survey/surface_class.h"
 #include "evaluate/photo_scorer.h"
@@ -27,6 +28,10 @@ class SurfacePhotoErrors {
   image::Image8 Add(const HeldOutPhoto& task, const PhotoResult& findings, const SurfacePicture& picture);
   // Sets the figures of pictures; classes only if a photo had true classes, then one per ScoredClasses().
   void Fill(SurfaceScores* scores) const;
+  // All that was added, so that others can go on from here.
+  void Save(base::BytePacker* out) const;
+  void Load(base::ByteUnpacker* in);
+  size_t n_photos() const { return psnr_.size(); }
 
  private:
   struct ClassSums {

@@ -27,6 +27,9 @@ class SurfaceScorer {
   // base::InputError for a truth that cannot be read, base::Interrupted.
   SurfaceScores Result(const EvaluateInput& input, const HeldOutScorer& scorer, base::ThreadPool& threads) const;
 
+  // The scores of pictures so far, to save them and to go on from saved ones.
+  SurfacePhotoErrors& photos() { return photos_; }
+
  private:
   const SurfaceMesh mesh_;
   SurfacePainter painter_;

@@ -32,6 +32,7 @@ struct Project {
   std::filesystem::path TourWorkFolder() const { return TourFolder() / "work"; }
   std::filesystem::path ReportFolder() const { return folder / "report"; }
   std::filesystem::path MetricsFile() const { return ReportFolder() / "metrics.json"; }
+  std::filesystem::path EvaluateProgressFile() const { return folder / "cache" / "evaluate_progress.bin"; }
   std::filesystem::path ConfigFile() const { return folder / "config.toml"; }
   std::filesystem::path LogFile() const { return folder / "log.txt"; }
   std::filesystem::path StateFolder() const { return folder / ".state"; }

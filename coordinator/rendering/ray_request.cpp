@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <type_traits>
 
 #include "core/base/json_text.h"
+#include "core/base/packed_bytes.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -16,68 +16,17 @@ namespace {
 static_assert(std::is_trivially_copyable_v<scene::RayInFlight> && std::is_trivially_copyable_v<render::RayColor> &&
               std::is_trivially_copyable_v<render::EngineOptions>);
 
-class Packer {
- public:
-  template <typename T>
-  void Add(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+Failure TakeFailure(base::ByteUnpacker* unpacker) {
+  try {
+    return FailureFromJson(base::ParseJson(unpacker->Take<std::string>()));
+  } catch (const nlohmann::json::exception&) {
+    unpacker->Fail();
   }
-  void AddText(const std::string& text) {
-    Add(static_cast<uint64_t>(text.size()));
-    bytes_ += text;
-  }
-  std::string Take() { return std::move(bytes_); }
+}
 
- private:
-  std::string bytes_;
-};
-
-class Unpacker {
- public:
-  explicit Unpacker(const std::string& bytes) : bytes_(bytes) {}
-  template <typename T>
-  T Take() {
-    Require(sizeof(T));
-    T value;
-    std::memcpy(&value, bytes_.data() + at_, sizeof value);
-    at_ += sizeof value;
-    return value;
-  }
-  std::string TakeText() {
-    const auto n = Take<uint64_t>();
-    Require(n);
-    at_ += n;
-    return bytes_.substr(at_ - n, n);
-  }
-  Failure TakeFailure() {
-    try {
-      return FailureFromJson(base::ParseJson(TakeText()));
-    } catch (const nlohmann::json::exception&) {
-      Fail();
-    }
-  }
-  // A number of elements that each take at least bytes_each; checked against the bytes that are left.
-  size_t TakeCount(size_t bytes_each) {
-    const auto n = Take<uint64_t>();
-    if (n > (bytes_.size() - at_) / bytes_each) Fail();
-    return n;
-  }
-  void End() const {
-    if (at_ != bytes_.size()) Fail();
-  }
-  [[noreturn]] static void Fail() {
-    throw std::runtime_error("a message with rays cannot be read. Make sure that all ranks run the same version of skyquilt");
-  }
-
- private:
-  void Require(size_t n) const {
-    if (n > bytes_.size() - at_) Fail();
-  }
-
-  const std::string& bytes_;
-  size_t at_ = 0;
-};
+base::ByteUnpacker UnpackerOf(const std::string& bytes) {
+  return {bytes, "a message with rays cannot be read. Make sure that all ranks run the same version of skyquilt"};
+}
 
 struct Common {
   double origin[3];
@@ -105,7 +54,7 @@ bool HasNormals(const Rendered& ray) {
 }
 
 // Member by member, because the padding bytes of the struct are not initialised.
-void AddRayInFlight(const scene::RayInFlight& ray_in_flight, bool normals, Packer* packer) {
+void AddRayInFlight(const scene::RayInFlight& ray_in_flight, bool normals, base::BytePacker* packer) {
   const render::RayState& s = ray_in_flight.state;
   packer->Add(s.transmittance);
   packer->Add(s.depth_moment);
@@ -123,18 +72,13 @@ void AddRayInFlight(const scene::RayInFlight& ray_in_flight, bool normals, Packe
   packer->Add(s.predicted_normal);
 }
 
-template <typename T, size_t kCount>
-void TakeArray(T (&values)[kCount], Unpacker* unpacker) {
-  for (T& value : values) value = unpacker->Take<T>();
-}
-
-scene::RayInFlight TakeRayInFlight(bool normals, Unpacker* unpacker) {
+scene::RayInFlight TakeRayInFlight(bool normals, base::ByteUnpacker* unpacker) {
   scene::RayInFlight ray_in_flight;
   render::RayState& s = ray_in_flight.state;
   s.transmittance = unpacker->Take<double>();
   s.depth_moment = unpacker->Take<double>();
-  TakeArray(s.rgb_srgb, unpacker);
-  TakeArray(s.concealed_light, unpacker);
+  unpacker->Take(&s.rgb_srgb);
+  unpacker->Take(&s.concealed_light);
   s.light_passed = unpacker->Take<float>();
   s.depth_front = unpacker->Take<float>();
   s.depth_median = unpacker->Take<float>();
@@ -143,8 +87,8 @@ scene::RayInFlight TakeRayInFlight(bool normals, Unpacker* unpacker) {
   ray_in_flight.at = unpacker->Take<double>();
   ray_in_flight.owner = unpacker->Take<int>();
   if (normals) {
-    TakeArray(s.density_normal, unpacker);
-    TakeArray(s.predicted_normal, unpacker);
+    unpacker->Take(&s.density_normal);
+    unpacker->Take(&s.predicted_normal);
   }
   return ray_in_flight;
 }
@@ -153,7 +97,7 @@ scene::RayInFlight TakeRayInFlight(bool normals, Unpacker* unpacker) {
 constexpr size_t kColorBytes = offsetof(render::RayColor, density_normal);
 static_assert(sizeof(render::RayColor) == kColorBytes + 6 * sizeof(float));
 
-void AddColor(const render::RayColor& color, bool normals, Packer* packer) {
+void AddColor(const render::RayColor& color, bool normals, base::BytePacker* packer) {
   std::array<char, kColorBytes> without_normals;
   std::memcpy(without_normals.data(), &color, kColorBytes);
   packer->Add(without_normals);
@@ -162,13 +106,13 @@ void AddColor(const render::RayColor& color, bool normals, Packer* packer) {
   packer->Add(color.predicted_normal);
 }
 
-render::RayColor TakeColor(bool normals, Unpacker* unpacker) {
+render::RayColor TakeColor(bool normals, base::ByteUnpacker* unpacker) {
   render::RayColor color;
   const auto without_normals = unpacker->Take<std::array<char, kColorBytes>>();
   std::memcpy(static_cast<void*>(&color), without_normals.data(), kColorBytes);
   if (normals) {
-    TakeArray(color.density_normal, unpacker);
-    TakeArray(color.predicted_normal, unpacker);
+    unpacker->Take(&color.density_normal);
+    unpacker->Take(&color.predicted_normal);
   }
   return color;
 }
@@ -176,7 +120,7 @@ render::RayColor TakeColor(bool normals, Unpacker* unpacker) {
 }  // namespace
 
 std::string ToBytes(const RayRequest& request) {
-  Packer packer;
+  base::BytePacker packer;
   packer.Add(request.id);
   packer.Add(request.options.step_scale);
   packer.Add(request.options.colour_threshold);
@@ -187,7 +131,7 @@ std::string ToBytes(const RayRequest& request) {
   const bool fresh = std::all_of(request.in_flight.begin(), request.in_flight.end(), Fresh);
   packer.Add(shared);
   packer.Add(fresh);
-  packer.Add(static_cast<uint64_t>(rays.size()));
+  packer.AddCount(rays.size());
   if (shared && !rays.empty()) packer.Add(CommonOf(rays.front()));
   for (const render::Ray& ray : rays) {
     for (int axis = 0; axis < 3; ++axis) packer.Add(ray.direction_enu[axis]);
@@ -201,7 +145,7 @@ std::string ToBytes(const RayRequest& request) {
 }
 
 RayRequest RayRequestFromBytes(const std::string& bytes) {
-  Unpacker unpacker(bytes);
+  base::ByteUnpacker unpacker = UnpackerOf(bytes);
   RayRequest request;
   request.id = unpacker.Take<uint64_t>();
   request.options.step_scale = unpacker.Take<double>();
@@ -233,16 +177,16 @@ RayRequest RayRequestFromBytes(const std::string& bytes) {
 }
 
 std::string ToBytes(const RayReply& reply) {
-  Packer packer;
+  base::BytePacker packer;
   packer.Add(reply.id);
   packer.Add(reply.samples);
   packer.Add(reply.field_loads);
-  packer.AddText(base::JsonText(ToJson(reply.failure)));
+  packer.Add(base::JsonText(ToJson(reply.failure)));
   const auto in_flight_normals = [](const scene::RayInFlight& ray_in_flight) { return HasNormals(ray_in_flight.state); };
   const bool normals = std::any_of(reply.in_flight.begin(), reply.in_flight.end(), in_flight_normals) ||
                        std::any_of(reply.colors.begin(), reply.colors.end(), HasNormals<render::RayColor>);
   packer.Add(normals);
-  packer.Add(static_cast<uint64_t>(reply.in_flight.size()));
+  packer.AddCount(reply.in_flight.size());
   size_t color = 0;
   for (const scene::RayInFlight& ray_in_flight : reply.in_flight) {
     const bool arrived = ray_in_flight.owner == scene::kFinished;
@@ -257,12 +201,12 @@ std::string ToBytes(const RayReply& reply) {
 }
 
 RayReply RayReplyFromBytes(const std::string& bytes) {
-  Unpacker unpacker(bytes);
+  base::ByteUnpacker unpacker = UnpackerOf(bytes);
   RayReply reply;
   reply.id = unpacker.Take<uint64_t>();
   reply.samples = unpacker.Take<int64_t>();
   reply.field_loads = unpacker.Take<int64_t>();
-  reply.failure = unpacker.TakeFailure();
+  reply.failure = TakeFailure(&unpacker);
   const bool normals = unpacker.Take<bool>();
   const size_t n = unpacker.TakeCount(sizeof(bool));
   for (size_t i = 0; i < n; ++i) {

@@ -40,6 +40,15 @@ void LogBlocks(const partition::BlockSet& blocks) {
   }
 }
 
+// Names whatever the scores of photos depend on: the stage's options and inputs, and the contents of files that options name.
+std::string ScoresKey(const Pipeline& pipeline, const StageStamp& stamp) {
+  const evaluate::EvaluateOptions& options = pipeline.settings.evaluate;
+  std::string key = stamp.Hash();
+  if (!options.lpips_network.empty()) key.append(" ").append(FileIdentity(options.lpips_network));
+  if (!options.normal_photos.empty()) key.append(" ").append(PhotosIdentity(options.normal_photos, pipeline.project.folder));
+  return key;
+}
+
 }  // namespace
 
 std::string SimulateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
@@ -138,7 +147,7 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   return StageStamp::kDone;
 }
 
-std::string EvaluateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
+std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp) {
   const Project& project = pipeline.project;
   SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
   base::ThreadPool& threads = session.threads();
@@ -156,7 +165,9 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
                                       .training = training ? &*training : nullptr,
                                       .config_text = pipeline.settings.Toml(),
                                       .vertical = geo::VerticalNamed(pipeline.settings.products.vertical),
-                                      .options = pipeline.settings.evaluate};
+                                      .options = pipeline.settings.evaluate,
+                                      .progress_file = project.EvaluateProgressFile(),
+                                      .progress_key = ScoresKey(pipeline, stamp)};
   pipeline.metrics = evaluate::Evaluate(input, threads);
   const evaluate::Metrics& metrics = pipeline.metrics;
   base::LogInfo(

@@ -272,6 +272,8 @@ std::vector<Stage> MakeTable() {
        .body = TourBody},
       {.name = "evaluate",
        .options = {"evaluate.", "run.image_width"},
+       // How often the scores are saved does not change them.
+       .ignored_options = {"evaluate.save_every_s"},
        .required = {{SceneFile, "merge"}},
        .inputs =
            [](const Pipeline& pipeline) {
@@ -280,7 +282,10 @@ std::vector<Stage> MakeTable() {
                                 {"surface", FileIdentity(pipeline.project.StampFile("surface"))},
                                 {"buildings", FileIdentity(pipeline.project.StampFile("buildings"))}};
            },
-       .outputs = [](const Project& p) { return Paths{p.ReportFolder()}; },
+       .outputs =
+           [](const Project& p) {
+             return Paths{p.ReportFolder(), p.EvaluateProgressFile()};
+           },
        .completion_files = [](const Project& p) { return Paths{p.MetricsFile()}; },
        .body = EvaluateBody,
        .load_results = RecallMetrics},

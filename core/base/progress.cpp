@@ -47,13 +47,14 @@ struct Progress::State {
   std::string unit;
   std::string detail;
   double done = 0.0;
+  double done_before = 0.0;
   Clock::time_point start = Clock::now();
   Clock::time_point last_draw = start;
   bool is_terminal = isatty(STDERR_FILENO) != 0;
   bool finished = false;
 
   std::string Line(double elapsed_s) const {
-    const double rate = elapsed_s > 0.0 ? done / elapsed_s : 0.0;
+    const double rate = elapsed_s > 0.0 ? std::max(0.0, done - done_before) / elapsed_s : 0.0;
     std::string line = label + " ";
     if (total > 0.0) {
       const double share = std::clamp(done / total, 0.0, 1.0);
@@ -91,10 +92,11 @@ struct Progress::State {
   }
 };
 
-Progress::Progress(const std::string& label, double total, const std::string& unit) : state_(std::make_unique<State>()) {
+Progress::Progress(const std::string& label, double total, const std::string& unit, double done_before) : state_(std::make_unique<State>()) {
   state_->label = label;
   state_->total = total;
   state_->unit = unit;
+  state_->done = state_->done_before = done_before;
 }
 
 Progress::~Progress() {

@@ -9,8 +9,9 @@ namespace skyquilt::base {
 
 class Progress {
  public:
-  // `unit` is shown with the rate ("photos", "rays"). total <= 0: unknown, then a count is shown instead of bar and percentage.
-  Progress(const std::string& label, double total, const std::string& unit);
+  // `unit` is shown with the rate ("photos", "rays"). total <= 0: unknown, then a count is shown instead of bar and percentage. done_before: done by
+  // an earlier run that this one continues; it counts in the bar, not in the rate.
+  Progress(const std::string& label, double total, const std::string& unit, double done_before = 0.0);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

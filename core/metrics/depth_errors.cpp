@@ -37,6 +37,18 @@ DepthErrors DepthErrorCollector::Result() const {
   return errors;
 }
 
+void DepthErrorCollector::Save(base::BytePacker* out) const {
+  out->Add(absolute_m_);
+  out->Add(sum_of_squares_);
+  out->Add(n_missing_);
+}
+
+void DepthErrorCollector::Load(base::ByteUnpacker* in) {
+  in->Take(&absolute_m_);
+  in->Take(&sum_of_squares_);
+  in->Take(&n_missing_);
+}
+
 DepthErrors CompareDepth(const image::ImageF& rendered, const image::ImageF& truth, const image::Image8* mask) {
   DepthErrorCollector collector;
   collector.Add(rendered, truth, mask);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/packed_bytes.h"
 #include "core/image/image.h"
 
 namespace skyquilt::metrics {
@@ -24,6 +25,9 @@ class DepthErrorCollector {
  public:
   void Add(const image::ImageF& rendered, const image::ImageF& truth, const image::Image8* mask);
   DepthErrors Result() const;
+  // All that was added, so that another collector can go on from here.
+  void Save(base::BytePacker* out) const;
+  void Load(base::ByteUnpacker* in);
 
  private:
   std::vector<float> absolute_m_;

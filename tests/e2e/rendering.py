@@ -35,6 +35,25 @@ def without_normals(scores):
     return kept
 
 
+def resume_evaluation(skyquilt, project, options, expected):
+    """An evaluation that is killed or interrupted goes on after the last photo that it has saved, and ends with the same scores and pictures."""
+    pictures = pictures_of(project / "report" / "images")
+    progress = project / "cache" / "evaluate_progress.bin"
+    expect(not progress.exists(), "a finished evaluation leaves the file of its progress")
+    for stop, status in ((signal.SIGKILL, -signal.SIGKILL), (signal.SIGINT, 130)):
+        process = skyquilt.start("evaluate", project, "--restart", *options, "--set", "evaluate.save_every_s=0.001")
+        wait_for(progress.exists, "first saved photo", process)
+        process.send_signal(stop)
+        text, _ = process.communicate(timeout=120)
+        expect(process.returncode == status, f"an evaluation that got signal {stop} ends with {process.returncode}:\n{text}")
+        expect(not (project / "report" / "metrics.json").exists(), "the evaluation was over before it could be stopped")
+        text = skyquilt.call("evaluate", project, *options, "--set", "evaluate.save_every_s=20")
+        expect(re.search(r"evaluate: continues after [1-9]\d* of \d+ photos", text), f"the evaluation does not continue:\n{text}")
+        expect(scores_of(project) == expected, "stopped and resumed gives other scores")
+        expect(pictures_of(project / "report" / "images") == pictures, "stopped and resumed gives other pictures")
+        expect(not progress.exists(), "a resumed evaluation leaves the file of its progress")
+
+
 def pictures_of(folder):
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".png", ".tiff", ".tif"))
     expect(len(files) >= 6, f"{folder} has only {[path.name for path in files]}")
@@ -107,6 +126,7 @@ def test(skyquilt, folder):
     expect(medians_of(with_normals, "head") == [], "normals are predicted without a head")
     expect(without_normals(with_normals) == without_normals(expected), "scoring the field's normals changes other scores")
     expected = with_normals
+    resume_evaluation(skyquilt, project, field_normals, expected)
     for ranks in (2, 4):
         shutil.rmtree(project / "report")
         skyquilt.call("evaluate", project, "--restart", *field_normals, ranks=ranks)

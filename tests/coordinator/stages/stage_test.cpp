@@ -23,6 +23,7 @@ TEST_F(StageFiles, RestartRemovesThisStageAndLaterOnesOnly) {
   Touch(project_.ContextCheckpoint());
   Touch(project_.SceneFile());
   Touch(project_.ReportFolder() / "metrics.json");
+  Touch(project_.EvaluateProgressFile());
   RemoveStagesFrom(project_, "train");
   EXPECT_TRUE(std::filesystem::exists(project_.SurveyFolder() / "survey.json"));
   EXPECT_TRUE(std::filesystem::exists(project_.BlocksFile()));
@@ -30,8 +31,17 @@ TEST_F(StageFiles, RestartRemovesThisStageAndLaterOnesOnly) {
   EXPECT_FALSE(std::filesystem::exists(project_.CheckpointFolder()));
   EXPECT_FALSE(std::filesystem::exists(project_.SceneFile()));
   EXPECT_FALSE(std::filesystem::exists(project_.ReportFolder()));
+  EXPECT_FALSE(std::filesystem::exists(project_.EvaluateProgressFile()));
   EXPECT_FALSE(LoadStamp(project_, "train").has_value());
   EXPECT_FALSE(LoadStamp(project_, "evaluate").has_value());
+}
+
+TEST_F(StageFiles, RestartOfTheEvaluationForgetsItsScores) {
+  Touch(project_.EvaluateProgressFile());
+  Touch(project_.PixelCacheFile());
+  RemoveStagesFrom(project_, "evaluate");
+  EXPECT_FALSE(std::filesystem::exists(project_.EvaluateProgressFile()));
+  EXPECT_TRUE(std::filesystem::exists(project_.PixelCacheFile()));
 }
 
 TEST(Stages, StagesDependOnTheirOwnOptionsOnly) {
@@ -43,6 +53,7 @@ TEST(Stages, StagesDependOnTheirOwnOptionsOnly) {
   after = before;
   after.run.threads = 3;
   after.train.checkpoint_every_s = 1.0;
+  after.evaluate.save_every_s = 1.0;
   after.products.preview = !before.products.preview;
   for (const Stage& stage : Stages()) EXPECT_EQ(StageOptions(stage, before), StageOptions(stage, after)) << stage.name;
   after.run.image_width = 640;

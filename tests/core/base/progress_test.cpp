@@ -52,6 +52,17 @@ TEST(Progress, NeverShowsMoreThan100Percent) {
   EXPECT_NE(testing::internal::GetCapturedStderr().find("100 %"), std::string::npos);
 }
 
+TEST(Progress, WhatAnEarlierRunDidCountsInTheBarOnly) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("continued", 1000.0, "photos", 900.0);
+    progress.Advance(0.0, "begun");
+    progress.Finish();
+  }
+  const std::string text = testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find(" 90 %  0 photos/s"), std::string::npos) << text;
+}
+
 TEST(Progress, QuietIsSilent) {
   testing::internal::CaptureStderr();
   Progress::SetQuiet(true);

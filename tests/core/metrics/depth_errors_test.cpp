@@ -54,5 +54,24 @@ TEST(DepthErrors, OfSeveralPhotosAreThoseOfAllPixels) {
   EXPECT_NEAR(collector.Result().rmse_m, std::sqrt(11.0), 1e-12);
 }
 
+TEST(DepthErrors, GoOnFromSavedOnes) {
+  DepthErrorCollector whole, first, second;
+  const ImageF truth = Row({0.0F, 0.0F, 0.0F}), near = Row({1.0F, kNanFloat, 0.1F}), far = Row({0.3F, 4e7F, kInfinityFloat});
+  whole.Add(near, truth, nullptr);
+  whole.Add(far, truth, nullptr);
+  first.Add(near, truth, nullptr);
+  base::BytePacker saved;
+  first.Save(&saved);
+  second.Add(far, truth, nullptr);  // forgotten
+  base::ByteUnpacker in(saved.bytes(), "damaged");
+  second.Load(&in);
+  EXPECT_NO_THROW(in.End());
+  second.Add(far, truth, nullptr);
+  EXPECT_EQ(second.Result().rmse_m, whole.Result().rmse_m);
+  EXPECT_EQ(second.Result().median_abs_m, whole.Result().median_abs_m);
+  EXPECT_EQ(second.Result().n, whole.Result().n);
+  EXPECT_EQ(second.Result().n_missing, 2);
+}
+
 }  // namespace
 }  // namespace skyquilt::metrics

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/base/cancel.h"
+#include "core/base/progress.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -48,7 +49,10 @@ AmbientVolume::AmbientVolume(const Mesh& mesh, const raytrace::TracedScene& scen
   node_.resize(nx * ny * nz);
   std::array<Vector3f, kDirections> open_sky;
   for (size_t k = 0; k < kDirections; ++k) open_sky[k] = sky.Radiance(directions[k]);
+  base::Progress progress("light of the sky", static_cast<double>(ny * nz), "rows");
   threads.ParallelFor(static_cast<int64_t>(ny * nz), [&](int64_t task, int /*thread*/) {
+    base::ThrowIfCancelled();
+    progress.Advance();
     const auto row = static_cast<size_t>(task);
     raytrace::RayPacket rays;
     for (size_t i = 0; i < nx; ++i) {
@@ -77,7 +81,7 @@ AmbientVolume::AmbientVolume(const Mesh& mesh, const raytrace::TracedScene& scen
       node.weight = n_inside > static_cast<int>(kDirections) / 4 ? 1e-4F : 1.0F;
     }
   });
-  base::ThrowIfCancelled();
+  progress.Finish();
 }
 
 Vector3f AmbientVolume::Irradiance(const Vector3f& position, const Vector3f& normal) const {

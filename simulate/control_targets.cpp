@@ -5,6 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "core/base/cancel.h"
+#include "core/base/progress.h"
 #include "core/base/random.h"
 #include "simulate/point_views.h"
 
@@ -116,9 +118,13 @@ std::vector<ControlTarget> ChooseTargets(const World& world, const PlaceSpec& pl
   const std::vector<Vector2d> places = Candidates(place, wanted, random);
   const PointViews views(world, place.camera, photos);
   std::vector<std::optional<ControlTarget>> found(places.size());
+  base::Progress progress("places of targets", static_cast<double>(places.size()), "places");
   threads.ParallelFor(static_cast<int64_t>(places.size()), [&](int64_t task, int /*thread*/) {
+    base::ThrowIfCancelled();
+    progress.Advance();
     found[static_cast<size_t>(task)] = TargetAt(world, place.camera, views, places[static_cast<size_t>(task)]);
   });
+  progress.Finish();
   std::vector<ControlTarget> usable;
   for (std::optional<ControlTarget>& one : found) {
     if (one) usable.push_back(std::move(*one));

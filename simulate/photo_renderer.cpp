@@ -137,7 +137,8 @@ void PhotoRenderer::ShadeTile(const Frame& frame, const MovingScene& moving, int
   }
 }
 
-Rendering PhotoRenderer::Render(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const {
+Rendering PhotoRenderer::Render(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads,
+                                const std::function<void(double share)>& advance) const {
   Rendering out;
   out.rgb_linear = image::ImageF(camera_.width, camera_.height, 3);
   out.usable = image::Image8(camera_.width, camera_.height, 1, 255);
@@ -147,6 +148,7 @@ Rendering PhotoRenderer::Render(const geo::Rigid3d& cam_from_enu, const MovingSc
   std::vector<char> row_masked(static_cast<size_t>(tiles_y), 0);
   threads.ParallelFor(tiles_y, [&](int64_t tile_y, int /*thread*/) {
     for (int tile_x = 0; tile_x < tiles_x; ++tile_x) ShadeTile(frame, moving, tile_x, static_cast<int>(tile_y), out, row_masked);
+    if (advance) advance(1.0 / tiles_y);
   });
   if (std::all_of(row_masked.begin(), row_masked.end(), [](char masked) { return masked == 0; })) out.usable = image::Image8();
   return out;

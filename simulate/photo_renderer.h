@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "core/base/thread_pool.h"
@@ -29,8 +30,9 @@ class PhotoRenderer {
   // samples_per_pixel 1, 4 or 16, on a regular grid. Holds references: world and camera must outlive it.
   PhotoRenderer(const World& world, const camera::Camera& camera, int samples_per_pixel, bool soft_shadows);
 
-  // The same image for any number of threads.
-  Rendering Render(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
+  // The same image for any number of threads. `advance` is called by any of them with the shares of the work that they finish.
+  Rendering Render(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads,
+                   const std::function<void(double share)>& advance = {}) const;
   // The same images for any number of threads.
   SurfaceImages Surfaces(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
 

@@ -113,7 +113,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
     base::ThrowIfCancelled();
     const PhotoPlan& photo = photos[i];
     const MovingScene moving = world.MovingAt(photo.time_s);
-    const Rendering rendering = renderer.Render(photo.cam_from_enu, moving, threads);
+    const Rendering rendering = renderer.Render(photo.cam_from_enu, moving, threads, [&progress](double share) { progress.Advance(share); });
     const image::Image8 pixels = Develop(rendering.rgb_linear, {LightRgb(photo), place.vignetting, place.camera.PrincipalPoint()});
     WritePhoto(folder, photo, pixels, place.camera, frame, options.jpeg_quality);
     if (!rendering.usable.Empty()) {
@@ -124,7 +124,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
       WriteSurfaceTruth(folder, photo, renderer.Surfaces(photo.cam_from_enu, moving, threads));
       ++summary.n_test;
     }
-    progress.Advance(1.0);
+    progress.Update(static_cast<double>(i + 1));
     if (!photo.finds_points) continue;
     for (SurfaceSeed& seed : ChooseSeeds(place.camera, static_cast<int>(i), kSeedsPerPhoto, place.seed)) {
       const uint8_t* rgb = pixels.At(seed.x, seed.y);

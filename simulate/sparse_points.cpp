@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/cancel.h"
+#include "core/base/progress.h"
 #include "core/base/random.h"
 #include "simulate/point_views.h"
 
@@ -68,7 +70,10 @@ std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const came
                                                   const std::vector<SurfaceSeed>& seeds, uint32_t seed, base::ThreadPool& threads) {
   const PointViews views(world, camera, photos);
   std::vector<std::optional<survey::ColmapPoint>> made(seeds.size());
+  base::Progress progress("sparse points", static_cast<double>(seeds.size()), "points");
   threads.ParallelFor(static_cast<int64_t>(seeds.size()), [&](int64_t task, int /*thread*/) {
+    base::ThrowIfCancelled();
+    progress.Advance();
     const SurfaceSeed& chosen = seeds[static_cast<size_t>(task)];
     const auto photo = static_cast<size_t>(chosen.photo);
     const std::optional<Found> found = TraceSeed(world, views, camera, photos[photo], chosen);
@@ -87,6 +92,7 @@ std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const came
     point.rgb = chosen.rgb;
     made[static_cast<size_t>(task)] = std::move(point);
   });
+  progress.Finish();
   std::vector<survey::ColmapPoint> points;
   for (std::optional<survey::ColmapPoint>& point : made) {
     if (!point) continue;

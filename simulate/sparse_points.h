@@ -27,7 +27,8 @@ struct SurfaceSeed {
 std::vector<SurfaceSeed> ChooseSeeds(const camera::Camera& camera, int photo, int count, uint32_t seed);
 
 // Traces each seed to the static scene (not on water, moving cars and at grazing angles), finds the photos that see the point, and keeps points seen
-// by three or more. Image ids are index + 1. Position errors follow from error_px and the ground sampling distance.
+// by three or more. Image ids are index + 1. Position errors follow from error_px and the ground sampling distance. Shows progress. Throws
+// base::Interrupted.
 std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const camera::Camera& camera, const std::vector<PhotoPlan>& photos,
                                                   const std::vector<SurfaceSeed>& seeds, uint32_t seed, base::ThreadPool& threads);
 

@@ -115,7 +115,7 @@ survey::ColmapModel MakeModel(const camera::Camera& camera, const std::vector<Ph
 
 void WriteModel(const std::filesystem::path& folder, const survey::ColmapModel& model) {
   std::filesystem::create_directories(folder / "sparse" / "0");
-  survey::WriteColmapText(model, folder / "sparse" / "0");
+  survey::WriteProjectedColmapBinary(model, folder / "sparse" / "0");
 }
 
 void WriteSurfaceTruth(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces) {

@@ -34,7 +34,7 @@ void WritePhoto(const std::filesystem::path& folder, const PhotoPlan& photo, con
                 const geo::EnuFrame& frame, int jpeg_quality);
 // The true poses in ENU metres; image ids are index + 1.
 survey::ColmapModel MakeModel(const camera::Camera& camera, const std::vector<PhotoPlan>& photos, std::vector<survey::ColmapPoint> points);
-// sparse/0: cameras, images and points3D as text.
+// sparse/0: cameras, images and points3D in COLMAP's binary format, with the projections of the points as observations.
 void WriteModel(const std::filesystem::path& folder, const survey::ColmapModel& model);
 // truth/depth/<stem>.tiff, truth/normals/<stem>.png and truth/classes/<stem>.png of a photo.
 void WriteSurfaceTruth(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces);

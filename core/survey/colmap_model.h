@@ -54,10 +54,14 @@ size_t CountColmapImages(const std::filesystem::path& folder);
 // Reads the 2-D observations of the same model; an image without any has an empty list. They may name points that ReadColmapModel dropped. Throws
 // base::InputError: missing files, truncation, an image twice, a pixel that is not finite.
 ColmapObservations ReadColmapObservations(const std::filesystem::path& folder);
-// Throws base::InputError when the folder cannot be written.
+// For models without observations: the projections of its points are written as such, as COLMAP's tools need one for each entry of a track. Numbers
+// have all their digits. Throws base::InputError when the folder cannot be written; std::logic_error for a track that names an unknown image.
 void WriteColmapText(const ColmapModel& model, const std::filesystem::path& folder);
-// The same in the binary format, with measured observations: every track entry of a point must be among its image's. Throws base::InputError when the
-// folder cannot be written; std::logic_error for a track without its observation.
+// The same model in the binary format, for millions of observations: besides the model memory holds 4 bytes of each. Shows progress. When cancelled
+// (base::Interrupted), earlier files of the folder stay as they are.
+void WriteProjectedColmapBinary(const ColmapModel& model, const std::filesystem::path& folder);
+// In the binary format with measured observations: every track entry of a point must be among its image's. Throws base::InputError when the folder
+// cannot be written; std::logic_error for a track without its observation.
 void WriteColmapBinary(const ColmapModel& model, const ColmapObservations& observations, const std::filesystem::path& folder);
 
 }  // namespace skyquilt::survey

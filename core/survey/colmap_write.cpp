@@ -21,7 +21,6 @@ struct Observation {
 
 }  // namespace
 
-// COLMAP's tools need a 2-D observation for each track entry. Our model has none, so the points' projections are written instead.
 void WriteColmapText(const ColmapModel& model, const std::filesystem::path& folder) {
   base::RequireWritableFolder(folder);
 

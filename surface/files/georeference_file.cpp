@@ -24,7 +24,7 @@ std::vector<std::string> DescribePlace(const MapFrame& frame) {
 }
 
 GeoreferenceFile::GeoreferenceFile(const MapFrame& frame, const std::filesystem::path& folder) : frame_(frame), json_(folder / "georeference.json") {
-  if (frame.georeferenced()) offset_ = std::make_unique<OutputFile>(folder / "offset.txt");
+  if (frame.georeferenced()) offset_ = std::make_unique<base::OutputFile>(folder / "offset.txt");
 }
 
 void GeoreferenceFile::Complete() {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/output_file.h"
 #include "surface/files/file_writer.h"
-#include "surface/files/output_file.h"
 
 namespace skyquilt::surface {
 
@@ -28,8 +28,8 @@ class GeoreferenceFile : public FileWriter {
 
  private:
   const MapFrame& frame_;
-  OutputFile json_;
-  std::unique_ptr<OutputFile> offset_;
+  base::OutputFile json_;
+  std::unique_ptr<base::OutputFile> offset_;
 };
 
 }  // namespace skyquilt::surface

@@ -7,7 +7,7 @@ GlbWriter::GlbWriter(const MapFrame& frame, const std::filesystem::path& folder,
 
 void GlbWriter::AddTile(const TexturedTile& tile, const MapVertices* in_map) {
   if (in_map == nullptr) return;
-  if (!binary_) binary_ = std::make_unique<OutputFile>(folder_ / "mesh.glb.bin");
+  if (!binary_) binary_ = std::make_unique<base::OutputFile>(folder_ / "mesh.glb.bin");
   GltfPrimitive primitive;
   primitive.name = tile.id.Name();
   for (const Eigen::Vector3d& position : in_map->position) primitive.position.push_back(YUp(position.cast<float>()));
@@ -22,7 +22,7 @@ void GlbWriter::AddTile(const TexturedTile& tile, const MapVertices* in_map) {
 
 void GlbWriter::Complete() {
   if (!binary_) return;
-  file_ = std::make_unique<OutputFile>(folder_ / "mesh.glb");
+  file_ = std::make_unique<base::OutputFile>(folder_ / "mesh.glb");
   file_->Append(document_.Head(Place(), folder_ / "mesh.glb", max_bytes_));
   file_->AppendContentOf(binary_.get());
   file_->Complete();

@@ -3,9 +3,9 @@
 
 #include <memory>
 
+#include "core/base/output_file.h"
 #include "surface/files/file_writer.h"
 #include "surface/files/gltf_document.h"
-#include "surface/files/output_file.h"
 
 namespace skyquilt::surface {
 
@@ -28,8 +28,8 @@ class GlbWriter : public FileWriter {
   uint64_t max_bytes_;
   GltfDocument document_;
   // The head of the file, whose length depends on all tiles, stands before the binary part.
-  std::unique_ptr<OutputFile> binary_;
-  std::unique_ptr<OutputFile> file_;
+  std::unique_ptr<base::OutputFile> binary_;
+  std::unique_ptr<base::OutputFile> file_;
 };
 
 }  // namespace skyquilt::surface

@@ -9,8 +9,8 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/memory_map.h"
+#include "core/base/output_file.h"
 #include "surface/files/bytes.h"
-#include "surface/files/output_file.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -116,11 +116,11 @@ void RewriteLasClasses(const std::filesystem::path& folder, const MapFrame& fram
     ThrowOtherCloud(parts.front()->file(), "it has " + std::to_string(count) + " points, the surface has " + std::to_string(written.size()));
   }
 
-  std::vector<std::unique_ptr<OutputFile>> outputs;
+  std::vector<std::unique_ptr<base::OutputFile>> outputs;
   std::vector<uint8_t> block;
   size_t next = 0;  // in `written`
   for (const std::unique_ptr<LasPart>& part : parts) {
-    OutputFile& output = *outputs.emplace_back(std::make_unique<OutputFile>(part->file()));
+    base::OutputFile& output = *outputs.emplace_back(std::make_unique<base::OutputFile>(part->file()));
     output.Append(part->Head());
     for (size_t first = 0; first < part->count(); first += kBlockPoints) {
       base::ThrowIfCancelled();
@@ -141,7 +141,7 @@ void RewriteLasClasses(const std::filesystem::path& folder, const MapFrame& fram
     output.Append(part->Tail());
     output.Complete();
   }
-  for (const std::unique_ptr<OutputFile>& output : outputs) output->Publish();
+  for (const std::unique_ptr<base::OutputFile>& output : outputs) output->Publish();
 }
 
 }  // namespace skyquilt::surface

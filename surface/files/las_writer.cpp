@@ -67,7 +67,8 @@ void LasWriter::AddPoints(std::span<const CloudPoint> points) {
 void LasWriter::BeginPart() {
   EndPart();
   part_points_ = 0;
-  OutputFile& part = *parts_.emplace_back(std::make_unique<OutputFile>(folder_ / ("cloud_" + std::to_string(parts_.size() + 1) + ".las")));
+  base::OutputFile& part =
+      *parts_.emplace_back(std::make_unique<base::OutputFile>(folder_ / ("cloud_" + std::to_string(parts_.size() + 1) + ".las")));
   part.Append(Header());
 }
 

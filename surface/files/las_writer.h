@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/output_file.h"
 #include "surface/files/file_writer.h"
-#include "surface/files/output_file.h"
 
 namespace skyquilt::surface {
 
@@ -30,7 +30,7 @@ class LasWriter : public FileWriter {
   std::filesystem::path folder_;
   int64_t max_points_;
   std::string wkt_;
-  std::vector<std::unique_ptr<OutputFile>> parts_;
+  std::vector<std::unique_ptr<base::OutputFile>> parts_;
   int64_t points_ = 0;
   // Of the last part.
   int64_t part_points_ = 0;

@@ -26,8 +26,8 @@ void AppendCorner(std::string* text, uint64_t number) {
 void ObjWriter::AddTile(const TexturedTile& tile, const MapVertices* in_map) {
   if (in_map == nullptr) return;
   if (!obj_) {
-    obj_ = std::make_unique<OutputFile>(folder_ / "mesh.obj");
-    mtl_ = std::make_unique<OutputFile>(folder_ / "mesh.mtl");
+    obj_ = std::make_unique<base::OutputFile>(folder_ / "mesh.obj");
+    mtl_ = std::make_unique<base::OutputFile>(folder_ / "mesh.mtl");
     for (const std::string& line : DescribePlace(frame_)) obj_->Append("# " + line + "\n");
     obj_->Append("mtllib mesh.mtl\n");
     mtl_->Append("# Skyquilt: one material per tile\n");
@@ -68,7 +68,7 @@ void ObjWriter::AddMaterial(const TexturedTile& tile) {
   mtl_->Append("\nnewmtl tile_" + tile.id.Name() + "\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nd 1\nillum 0\n");
   if (tile.atlas_jpeg.empty()) return;
   mtl_->Append("map_Kd " + picture + "\n");
-  OutputFile& texture = *textures_.emplace_back(std::make_unique<OutputFile>(folder_ / picture));
+  base::OutputFile& texture = *textures_.emplace_back(std::make_unique<base::OutputFile>(folder_ / picture));
   texture.Append(tile.atlas_jpeg);
   texture.Complete();
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/output_file.h"
 #include "surface/files/file_writer.h"
-#include "surface/files/output_file.h"
 
 namespace skyquilt::surface {
 
@@ -25,9 +25,9 @@ class ObjWriter : public FileWriter {
 
   const MapFrame& frame_;
   std::filesystem::path folder_;
-  std::unique_ptr<OutputFile> obj_;
-  std::unique_ptr<OutputFile> mtl_;
-  std::vector<std::unique_ptr<OutputFile>> textures_;  // complete
+  std::unique_ptr<base::OutputFile> obj_;
+  std::unique_ptr<base::OutputFile> mtl_;
+  std::vector<std::unique_ptr<base::OutputFile>> textures_;  // complete
   uint64_t vertices_ = 0;
   int64_t triangles_ = 0;
 };

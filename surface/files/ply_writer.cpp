@@ -75,7 +75,7 @@ void PlyMeshWriter::AddTile(const TexturedTile& tile, const MapVertices* in_map)
   if (in_map == nullptr) return;
   if (!vertices_) {
     vertices_ = std::make_unique<PlyVertices>(frame_, folder_ / "mesh.ply", true);
-    faces_ = std::make_unique<OutputFile>(folder_ / "mesh.ply.faces");
+    faces_ = std::make_unique<base::OutputFile>(folder_ / "mesh.ply.faces");
   }
   const uint64_t first = vertices_->count();
   if (first + tile.position.size() > static_cast<uint64_t>(std::numeric_limits<int32_t>::max())) {

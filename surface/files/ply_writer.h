@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
+#include "core/base/output_file.h"
 #include "core/image/image.h"
 #include "surface/files/file_writer.h"
-#include "surface/files/output_file.h"
 
 namespace skyquilt::surface {
 
@@ -24,15 +24,15 @@ class PlyVertices {
   uint64_t count() const { return count_; }
   // Writes the waiting vertices and the head with the numbers of vertices and faces.
   void WriteHead(uint64_t faces);
-  OutputFile& file() { return file_; }
-  const OutputFile& file() const { return file_; }
+  base::OutputFile& file() { return file_; }
+  const base::OutputFile& file() const { return file_; }
 
  private:
   std::string Head(uint64_t faces, size_t padding) const;
   void FlushRecords();
 
   const MapFrame& frame_;
-  OutputFile file_;
+  base::OutputFile file_;
   bool with_faces_;
   size_t head_bytes_ = 0;
   uint64_t count_ = 0;
@@ -54,7 +54,7 @@ class PlyMeshWriter : public FileWriter {
   const MapFrame& frame_;
   std::filesystem::path folder_;
   std::unique_ptr<PlyVertices> vertices_;
-  std::unique_ptr<OutputFile> faces_;  // stand after all vertices
+  std::unique_ptr<base::OutputFile> faces_;  // stand after all vertices
   uint64_t triangles_ = 0;
 };
 

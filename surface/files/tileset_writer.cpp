@@ -9,9 +9,9 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
+#include "core/base/output_file.h"
 #include "core/geo/ecef.h"
 #include "surface/files/gltf_document.h"
-#include "surface/files/output_file.h"
 
 namespace skyquilt::surface {
 
@@ -109,7 +109,7 @@ void TilesetWriter::WriteContent(const std::string& name, const TexturedTile& ti
   GltfDocument document;
   const std::vector<uint8_t> binary = document.Add(primitive);
   // The folder is renamed as a whole, so its files have their names from the start.
-  OutputFile file(partial_ / (name + ".glb"));
+  base::OutputFile file(partial_ / (name + ".glb"));
   file.Append(document.Head(place, partial_ / (name + ".glb")));
   file.Append(binary);
   file.Complete();
@@ -183,7 +183,7 @@ void TilesetWriter::Complete() {
   if (earth_.raised()) extras[kSurveyTransform] = ColumnMajor(geo::EcefFromEnu(frame_.origin()));
   tileset["geometricError"] = whole_m;
   tileset["root"] = root;
-  OutputFile file(partial_ / "tileset.json");
+  base::OutputFile file(partial_ / "tileset.json");
   file.Append(base::JsonText(tileset, 1) + "\n");
   file.Complete();
   file.Publish();

@@ -1,7 +1,9 @@
 """Wrong usage and bad input: each case has its own message and exit status, and no saved work is lost."""
+import math
 import os
 import shutil
 
+from colmap_files import read_images, write_images
 from harness import expect, main, small_survey
 
 
@@ -67,15 +69,12 @@ def test(skyquilt, folder):
     # A pose that is not a number.
     broken = folder / "broken"
     shutil.copytree(survey, broken)
-    images = next(broken.rglob("images.txt"))
-    lines = images.read_text().splitlines()
-    first = next(i for i, line in enumerate(lines) if line and not line.startswith("#"))
-    words = lines[first].split()
-    words[1] = "nan"
-    lines[first] = " ".join(words)
-    images.write_text("\n".join(lines) + "\n")
+    file = broken / "sparse" / "0" / "images.bin"
+    images = read_images(file)
+    images[0].rotation = (math.nan, *images[0].rotation[1:])
+    write_images(file, images)
     text = skyquilt.call("prepare", broken, "-o", folder / "out_broken", status=3)
-    expect(words[-1] in text, f"the photo with the NaN pose is not named:\n{text}")
+    expect(images[0].name in text, f"the photo with the NaN pose is not named:\n{text}")
 
     # Camera models of other programs: what is wrong and where, before anything is made.
     for name, content, found in (("transforms.json", '{"fl_x": 500,\n "frames": [\n  {"file_path": 7}]}', "line 3: frames[0].file_path"),

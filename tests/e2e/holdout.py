@@ -1,10 +1,12 @@
 """Held-out photos leave no trace in a scene: with other pixels in them, or with other poses and other observations of points, everything from the
 sparse points to the textures of the surface is the same to the last bit. Only what tells of the held-out photos themselves may differ.
 (Structure from motion is not part of it: the simulated survey has poses and points.)"""
+import dataclasses
 import hashlib
 import json
 import math
 
+from colmap_files import read_images, read_points, write_images, write_points
 from harness import arrays_of, copied, expect, main, prepare_small, small_project, small_survey, state_of
 
 TRAIN = ["--steps", "150", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096"]
@@ -61,42 +63,28 @@ def rotated(q, v):
     return product(product(q, (0.0, *v)), (q[0], -q[1], -q[2], -q[3]))[1:]
 
 
-def moved(line):
-    """A line of images.txt with another pose. x_in_camera = rotation x + translation."""
-    words = line.split()
-    rotation, translation = tuple(map(float, words[1:5])), tuple(map(float, words[5:8]))
-    shift = rotated(rotation, MOVED_M)  # of the camera by MOVED_M: x_in_camera = rotation (x - MOVED_M) + translation
+def moved(image):
+    """An image with another pose and no observations. x_in_camera = rotation x + translation."""
+    shift = rotated(image.rotation, MOVED_M)  # of the camera by MOVED_M: x_in_camera = rotation (x - MOVED_M) + translation
     half = math.radians(TURNED_DEG) / 2.0
     turn = (math.cos(half), 0.0, math.sin(half), 0.0)
-    rotation = product(turn, rotation)
-    translation = rotated(turn, [t - s for t, s in zip(translation, shift)])
-    return " ".join([words[0], *map(repr, rotation), *map(repr, translation), *words[8:]])
+    translation = rotated(turn, [t - s for t, s in zip(image.translation, shift)])
+    return dataclasses.replace(image, rotation=product(turn, image.rotation), translation=translation, observations=b"")
 
 
 def with_other_poses(survey):
     """Held-out photos stand and look elsewhere. Half of the points are no longer seen by any of them, the others by all."""
     model = survey / "sparse" / "0"
-    lines = (model / "images.txt").read_text().split("\n")
-    at = [i for i, line in enumerate(lines) if line.endswith(".jpg")]
-    chosen = held_out([lines[i].split()[9] for i in at])
-    ids = []
-    for i in at:
-        words = lines[i].split()
-        if words[9] in chosen:
-            ids.append(words[0])
-            lines[i], lines[i + 1] = moved(lines[i]), ""
+    images = read_images(model / "images.bin")
+    chosen = held_out(image.name for image in images)
+    ids = [image.id for image in images if image.name in chosen]
     expect(len(ids) == len(chosen) > 2, f"the model has poses of {ids}")
-    (model / "images.txt").write_text("\n".join(lines))
+    write_images(model / "images.bin", [moved(image) if image.id in ids else image for image in images])
 
-    points, first_of_track = [], 8
-    for number, line in enumerate((model / "points3D.txt").read_text().split("\n")):
-        words = line.split()
-        if words and words[0] != "#":
-            track = list(zip(words[first_of_track::2], words[first_of_track + 1::2]))
-            track = [seen for seen in track if seen[0] not in ids] + [(photo, "0") for photo in ids if number % 2]
-            line = " ".join(words[:first_of_track] + [word for seen in track for word in seen])
-        points.append(line)
-    (model / "points3D.txt").write_text("\n".join(points))
+    points = read_points(model / "points3D.bin")
+    for number, point in enumerate(points):
+        point.track = [seen for seen in point.track if seen[0] not in ids] + [(image_id, 0) for image_id in ids if number % 2]
+    write_points(model / "points3D.bin", points)
     return survey
 
 

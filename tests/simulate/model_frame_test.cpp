@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/progress.h"
 #include "core/base/random.h"
 #include "simulate/flight.h"
 #include "simulate/survey_writer.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::simulate {
 namespace {
@@ -44,6 +46,37 @@ TEST(ModelFrame, ReprojectionsStayTheSame) {
       }
     }
     EXPECT_GT(n_seen, 1000);
+  }
+}
+
+// With all digits: what is trained from a simulated survey does not depend on how its model is written.
+TEST(WriteModel, TheModelIsReadBackUnchanged) {
+  base::Progress::SetQuiet(true);
+  survey::ColmapModel model = TownModel();
+  base::Random random(8);
+  for (survey::ColmapPoint& point : model.points) {
+    for (const survey::ColmapImage& image : model.images) {
+      if (random.Below(10) == 0) point.image_ids.push_back(image.id);
+    }
+    point.error_px = random.Uniform(0.2, 0.9);
+  }
+  for (const bool exact : {true, false}) {
+    if (!exact) MoveModel(RandomModelFrame(4), model);
+    const TemporaryFolder folder;
+    WriteModel(folder.path(), model);
+    const survey::ColmapModel read = survey::ReadColmapModel(folder / "sparse/0");
+    ASSERT_EQ(read.images.size(), model.images.size());
+    for (size_t i = 0; i < read.images.size(); ++i) {
+      EXPECT_EQ(read.images[i].name, model.images[i].name);
+      EXPECT_TRUE(read.images[i].cam_from_world.translation == model.images[i].cam_from_world.translation);
+      EXPECT_LT((read.images[i].cam_from_world.rotation.coeffs() - model.images[i].cam_from_world.rotation.coeffs()).norm(), 1e-15);
+    }
+    ASSERT_EQ(read.points.size(), model.points.size());
+    for (size_t i = 0; i < read.points.size(); ++i) {
+      EXPECT_TRUE(read.points[i].x_in_world == model.points[i].x_in_world);
+      EXPECT_EQ(read.points[i].error_px, model.points[i].error_px);
+      EXPECT_EQ(read.points[i].image_ids, model.points[i].image_ids);
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -183,6 +184,29 @@ TEST_F(HamletSurvey, DepthAgreesWithThePoints) {
   std::sort(differences.begin(), differences.end());
   EXPECT_LT(differences[differences.size() / 2], 0.10);
   EXPECT_LT(differences[differences.size() * 8 / 10], 0.6);
+}
+
+TEST_F(HamletSurvey, TheModelIsThatOfThePlan) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(root_ / "two/sparse/0")) names.insert(entry.path().filename().string());
+  EXPECT_EQ(names, (std::set<std::string>{"cameras.bin", "images.bin", "points3D.bin"}));
+  const survey::ColmapModel model = survey::ReadColmapModel(root_ / "two/sparse/0");
+  PlaceSpec place = ResolvePlace(Hamlet());
+  // The flight depends on the terrain alone.
+  place.city.tree_detail = 0;
+  place.ambient_voxel_m = 24.0;
+  base::ThreadPool threads(2);
+  const World world(place, Hamlet().light_intensity, threads);
+  const std::vector<PhotoPlan> plan = PlanFlight(place, world.TakeoffHeight(place));
+  ASSERT_EQ(model.images.size(), plan.size());
+  EXPECT_EQ(model.cameras.at(1).params, place.camera.params);
+  for (size_t i = 0; i < plan.size(); ++i) {
+    EXPECT_EQ(model.images[i].name, plan[i].name);
+    const geo::Rigid3d& pose = model.images[i].cam_from_world;
+    EXPECT_TRUE(pose.translation == plan[i].cam_from_enu.translation);
+    // The reader normalizes it.
+    EXPECT_LT((pose.rotation.coeffs() - plan[i].cam_from_enu.rotation.coeffs()).norm(), 1e-15);
+  }
 }
 
 // What COLMAP's tools and prepare need: each photo of a track has the point among its observations, inside the frame, and no other point.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <mutex>
 #include <vector>
 
 #include "simulate/flight.h"
@@ -154,6 +155,28 @@ TEST_F(TownWorld, CarsMoveAndAreMasked) {
   const image::ImageF far = renderer.Surfaces(pose, after, *threads_).z_depth;
   EXPECT_GT(*far.At(16, 15) - *near.At(16, 15), 1.0F);
   EXPECT_LT(*far.At(16, 15) - *near.At(16, 15), 2.3F);
+}
+
+TEST_F(TownWorld, SharesOfARenderingAddUpToOne) {
+  camera::Camera camera;
+  camera.model = camera::CameraModel::kSimplePinhole;
+  camera.width = 21;
+  camera.height = 18;  // not a multiple of the renderer's tiles
+  camera.params = {30.0, 10.5, 9.0};
+  const PhotoRenderer renderer(*world_, camera, 1, false);
+  const geo::Rigid3d pose = PoseFromGimbal({0.0, 0.0, 80.0}, 0.0, -90.0, 0.0);
+  const MovingScene moving = world_->MovingAt(0.0);
+  std::mutex mutex;
+  double sum = 0.0;
+  int n = 0;
+  const Rendering told = renderer.Render(pose, moving, *threads_, [&](double share) {
+    const std::lock_guard lock(mutex);
+    sum += share;
+    ++n;
+  });
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+  EXPECT_GT(n, 3);
+  EXPECT_TRUE(told.rgb_linear.data == renderer.Render(pose, moving, *threads_).rgb_linear.data);
 }
 
 class HillsideWorld : public testing::Test {

@@ -9,7 +9,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "surface/files/output_file.h"
+#include "core/base/output_file.h"
 
 namespace skyquilt::tour {
 namespace {
@@ -43,7 +43,7 @@ class ScriptFileWriter {
   }
 
   std::filesystem::path target_;
-  surface::OutputFile file_;
+  base::OutputFile file_;
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
-// A file that is either complete or missing under its final name: it is written as <name>.partial and renamed when it is complete.
+// A file that is written piece by piece, so that memory does not grow with it, and that is either complete or missing under its final name: it is
+// written as <name>.partial and renamed when it is complete.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-namespace skyquilt::surface {
+namespace skyquilt::base {
 
 class OutputFile {
  public:
-  // Replaces an older partial file. Throws base::InputError, as do all other functions (disk full, no permission).
+  // Replaces an older partial file. Throws InputError, as do all other functions (disk full, no permission).
   explicit OutputFile(const std::filesystem::path& target);
   ~OutputFile();  // removes the partial file unless it was published
   OutputFile(const OutputFile&) = delete;
@@ -21,10 +22,12 @@ class OutputFile {
   void Append(std::string_view text);
   // Replaces bytes that were appended before.
   void WriteAt(uint64_t offset, std::span<const uint8_t> bytes);
-  // Appends all that the other file holds so far. Throws base::Interrupted when cancelled.
+  // Appends all that the other file holds so far. Throws Interrupted when cancelled.
   void AppendContentOf(OutputFile* other);
   uint64_t size() const { return written_ + buffer_.size(); }
 
+  // Waits until everything so far is on disk. Called now and then while a large file grows, it spares Complete a long wait.
+  void Sync();
   // Waits until everything is on disk and closes the file; nothing may be appended afterwards.
   void Complete();
   // Gives the complete file its name.
@@ -43,4 +46,4 @@ class OutputFile {
   std::vector<uint8_t> buffer_;
 };
 
-}  // namespace skyquilt::surface
+}  // namespace skyquilt::base

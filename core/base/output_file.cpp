@@ -1,4 +1,4 @@
-#include "surface/files/output_file.h"
+#include "core/base/output_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,9 +9,8 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "surface/files/bytes.h"
 
-namespace skyquilt::surface {
+namespace skyquilt::base {
 namespace {
 
 constexpr size_t kBufferBytes = 1 << 20;
@@ -22,7 +21,7 @@ OutputFile::OutputFile(const std::filesystem::path& target) : target_(target), p
   // A new file rather than an old one made empty: another process may still have the old one open.
   unlink(partial_.c_str());
   descriptor_ = open(partial_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) base::ThrowFileError(target_, "cannot be created", errno);
+  if (descriptor_ < 0) ThrowFileError(target_, "cannot be created", errno);
 }
 
 OutputFile::~OutputFile() {
@@ -41,7 +40,7 @@ void OutputFile::Append(std::span<const uint8_t> bytes) {
 }
 
 void OutputFile::Append(std::string_view text) {
-  Append(AsBytes(text));
+  Append(std::span(reinterpret_cast<const uint8_t*>(text.data()), text.size()));
 }
 
 void OutputFile::WriteAt(uint64_t offset, std::span<const uint8_t> bytes) {
@@ -54,31 +53,36 @@ void OutputFile::AppendContentOf(OutputFile* other) {
   other->Flush();
   std::vector<uint8_t> block(std::min<uint64_t>(8 * kBufferBytes, other->written_));
   for (uint64_t at = 0; at < other->written_;) {
-    base::ThrowIfCancelled();
+    ThrowIfCancelled();
     const auto wanted = static_cast<size_t>(std::min<uint64_t>(block.size(), other->written_ - at));
     const ssize_t n = pread(other->descriptor_, block.data(), wanted, static_cast<off_t>(at));
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) base::ThrowFileError(other->partial_, "cannot read", errno);
-    if (n == 0) throw base::InputError(other->partial_, "became shorter while it was in use", "Run the command again");
+    if (n < 0) ThrowFileError(other->partial_, "cannot read", errno);
+    if (n == 0) throw InputError(other->partial_, "became shorter while it was in use", "Run the command again");
     Append(std::span<const uint8_t>(block.data(), static_cast<size_t>(n)));
     at += static_cast<uint64_t>(n);
   }
 }
 
+void OutputFile::Sync() {
+  SKYQUILT_CHECK(descriptor_ >= 0, partial_.string() + " was closed before");
+  Flush();
+  if (fsync(descriptor_) != 0) ThrowFileError(target_, "cannot write to disk", errno);
+}
+
 void OutputFile::Complete() {
   if (descriptor_ < 0) return;
-  Flush();
+  Sync();
   buffer_ = {};
-  if (fsync(descriptor_) != 0) base::ThrowFileError(target_, "cannot write to disk", errno);
   const int descriptor = descriptor_;
   descriptor_ = -1;
   // Network file systems report some write errors only here.
-  if (close(descriptor) != 0) base::ThrowFileError(target_, "cannot write to disk", errno);
+  if (close(descriptor) != 0) ThrowFileError(target_, "cannot write to disk", errno);
 }
 
 void OutputFile::Publish(const std::filesystem::path& target) {
   SKYQUILT_CHECK(descriptor_ < 0, partial_.string() + " is not complete");
-  if (rename(partial_.c_str(), target.c_str()) != 0) base::ThrowFileError(target, "cannot be renamed from " + partial_.string(), errno);
+  if (rename(partial_.c_str(), target.c_str()) != 0) ThrowFileError(target, "cannot be renamed from " + partial_.string(), errno);
   published_ = true;
 }
 
@@ -94,10 +98,10 @@ void OutputFile::Write(std::span<const uint8_t> bytes, uint64_t offset) {
   while (!bytes.empty()) {
     const ssize_t n = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) base::ThrowFileError(target_, "cannot write", errno);
+    if (n < 0) ThrowFileError(target_, "cannot write", errno);
     bytes = bytes.subspan(static_cast<size_t>(n));
     offset += static_cast<uint64_t>(n);
   }
 }
 
-}  // namespace skyquilt::surface
+}  // namespace skyquilt::base

@@ -104,6 +104,7 @@ void WriteReport(const EvaluateInput& input, const Metrics& metrics, const Repor
   page.training = input.training == nullptr ? &unknown : input.training;
   page.curves = ReadCurves(input.project_folder / "checkpoints", names);
   page.brightness = &pictures.brightness();
+  page.files = ReadInputFiles(input.project_folder / "survey" / "input.csv");
   page.images = pictures.images();
   page.mark_pictures = std::move(marks);
   if (found != nullptr) {

@@ -137,7 +137,7 @@ std::string BuildReportPage(const ReportInput& input) {
                  "all parts of the input");
   SKYQUILT_CHECK(input.images.empty() || input.images.size() == input.metrics->photos.size(), "one entry of images per scored photo");
   const std::string brightness = BrightnessSection(input), made = SurfaceSection(input), found = BuildingsSection(input);
-  const std::string control = ControlSection(input);
+  const std::string control = ControlSection(input), files = InputSection(input);
   page::PageFrame frame{.title = input.title,
                         .window_title = "Skyquilt report",
                         .subtitle = fmt::format("Survey report \xC2\xB7 {} \xC2\xB7 {} photos, {} blocks", ShownDate(input.metrics->date),
@@ -147,11 +147,12 @@ std::string BuildReportPage(const ReportInput& input) {
   if (!found.empty()) frame.anchors.emplace_back("buildings", "Buildings");
   frame.anchors.emplace_back("geo", "Geo-reference");
   if (!control.empty()) frame.anchors.emplace_back("control", "Control points");
+  if (!files.empty()) frame.anchors.emplace_back("input", "Photo folder");
   frame.anchors.emplace_back("details", "Details");
   if (!brightness.empty()) frame.anchors.emplace_back("brightness", "Brightness");
   frame.anchors.insert(frame.anchors.end(), {{"training", "Training"}, {"method", "Method"}});
   return page::PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + made + found +
-         GeoSection(input) + control + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + page::PageEnd();
+         GeoSection(input) + control + files + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + page::PageEnd();
 }
 
 }  // namespace skyquilt::evaluate

@@ -10,6 +10,7 @@
 #include "core/survey/survey.h"
 #include "evaluate/brightness_report.h"
 #include "evaluate/control_pictures.h"
+#include "evaluate/input_files.h"
 #include "evaluate/metrics.h"
 #include "evaluate/training_curve.h"
 #include "partition/block.h"
@@ -46,6 +47,7 @@ struct ReportInput {
   Curves curves;                                 // of its fields
   const BrightnessReport* brightness = nullptr;  // nothing or empty: no such section
   const BuildingsReport* buildings = nullptr;    // nothing: no such section
+  InputFiles files;                              // of the photo folder
   std::vector<PhotoImages> images;               // entry i belongs to metrics->photos[i]
   std::vector<MarkPicture> mark_pictures;        // of the survey's control points, in their order
   std::optional<MapBackground> background;
@@ -64,6 +66,7 @@ std::string SurfaceSection(const ReportInput& input);    // what was made of the
 std::string BuildingsSection(const ReportInput& input);  // the found buildings, and their scores; empty when none were searched
 std::string GeoSection(const ReportInput& input);        // how the survey was placed on Earth; see page_geo.h
 std::string ControlSection(const ReportInput& input);    // control and check points, see page_control.h; empty without any
+std::string InputSection(const ReportInput& input);      // what the photo folder had; empty when nothing in it is remarkable
 std::string DetailsSection(const ReportInput& input);    // every figure and its meaning
 std::string ClassTable(const Metrics& metrics);          // empty without true classes
 std::string MethodSection(const ReportInput& input);

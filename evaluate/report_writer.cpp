@@ -112,6 +112,7 @@ void WriteReport(const EvaluateInput& input, const Metrics& metrics, const Repor
   const BrightnessReport brightness = pictures.Brightness();
   page.brightness = &brightness;
   page.images = pictures.written().images;
+  page.files = ReadInputFiles(input.project_folder / "survey" / "input.csv");
   page.mark_pictures = std::move(marks);
   if (found != nullptr) {
     const buildings::BuildingSet& set = found->compared.set;

@@ -15,6 +15,7 @@
 #include "prepare/fit_report.h"
 #include "prepare/height_bias.h"
 #include "prepare/levelled_fit.h"
+#include "prepare/photo_column.h"
 #include "prepare/place_adjustment.h"
 #include "prepare/place_problems.h"
 #include "prepare/tags.h"
@@ -115,7 +116,7 @@ TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<T
 std::optional<Vector3d> UpByTags(const std::vector<Station>& stations, const PrepareOptions& options) {
   constexpr double kUseful_deg = 10.0;
   const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
-  if (n_tagged < kMinAgreeing || AllTagsEqual(stations)) return std::nullopt;
+  if (n_tagged < kMinAgreeing || TagsAboveOneAnother(stations)) return std::nullopt;
   std::vector<size_t> order(stations.size());
   std::iota(order.begin(), order.end(), size_t{0});
   const std::vector<Tag> tags = CollectTags(stations, order, MedianPosition(stations), JudgeHeights(stations));
@@ -242,6 +243,13 @@ std::optional<survey::Problem> CoordinateProblem(const TaggedFlight& flight, con
   return found;
 }
 
+// Whether the photos are above one another, and their tags do not tell the little by which they differ horizontally from noise.
+bool LeavesNorthOpen(const std::vector<Station>& stations, const Gravity& gravity, const Georeference& result) {
+  constexpr double kOpen_deg = 10.0;
+  if (result.ok && result.fit.accuracy.yaw_deg <= kOpen_deg) return false;
+  return TagsFormColumn(stations) && CamerasAboveOneAnother(stations, gravity);
+}
+
 }  // namespace
 
 Georeference PlaceOnEarth(const std::vector<Station>& given, const std::vector<Vector3d>& points, const PrepareOptions& options) {
@@ -261,10 +269,8 @@ Georeference PlaceOnEarth(const std::vector<Station>& given, const std::vector<V
   } else if (n_tagged < kMinAgreeing) {
     result.problems.push_back(
         NoPlace("too_few_tags", "only " + std::to_string(n_tagged) + " photos with a pose have a GPS tag, 4 are needed", use_tags));
-  } else if (AllTagsEqual(stations)) {
-    result.problems.push_back(NoPlace("equal_tags", "all GPS tags are at one place",
-                                      "The tags were copied from one photo, or the receiver had no fix. Tag the photos from the flight log, then run "
-                                      "the same command with --restart"));
+  } else if (TagsAboveOneAnother(stations)) {
+    result.problems.push_back(OnePlaceProblem(stations, gravity));
   } else {
     result.origin = MedianPosition(stations);
     const Track track(stations, result.flight);
@@ -275,6 +281,10 @@ Georeference PlaceOnEarth(const std::vector<Station>& given, const std::vector<V
         result.ok = false;
         result.problems = {NoPlace(fault->code, fault->finding, fault->advice)};
       }
+    }
+    if (LeavesNorthOpen(stations, gravity, result)) {
+      result.ok = false;
+      result.problems = {ColumnProblem()};
     }
   }
   if (!result.ok) {

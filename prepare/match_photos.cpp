@@ -1,59 +1,53 @@
 #include "prepare/match_photos.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <span>
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
+#include "prepare/models/photo_names.h"
 
 namespace skyquilt::prepare {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string BaseNameKey(const std::string& name) {
-  return base::LowerCase(fs::path(name).filename().string());
-}
-
-class PhotoFinder {
- public:
-  PhotoFinder(const std::vector<PhotoFile>& files, const survey::ColmapModel& model) {
-    for (size_t i = 0; i < files.size(); ++i) {
-      by_name_[files[i].name] = i;
-      by_base_name_[BaseNameKey(files[i].name)].push_back(i);
-    }
-    for (const survey::ColmapImage& image : model.images) ++uses_[BaseNameKey(image.name)];
-  }
-  std::optional<size_t> Find(const std::string& name) const {
-    if (const auto exact = by_name_.find(name); exact != by_name_.end()) return exact->second;
-    const std::string key = BaseNameKey(name);
-    const auto same = by_base_name_.find(key);
-    if (same == by_base_name_.end() || same->second.size() != 1 || uses_.at(key) != 1) return std::nullopt;
-    return same->second.front();
-  }
-
- private:
-  std::map<std::string, size_t> by_name_;
-  std::map<std::string, std::vector<size_t>> by_base_name_;
-  std::map<std::string, int> uses_;
+// The image that a photo is, so far.
+struct Claim {
+  size_t strength = 0;  // parts of the path in common; the whole path is more than any
+  uint32_t image = 0;
+  bool is_only = true;  // of this strength
 };
 
 }  // namespace
 
 FileOfImage FindPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files) {
-  const PhotoFinder finder(files, model);
-  FileOfImage found;
+  std::vector<std::string> names;
+  names.reserve(files.size());
+  for (const PhotoFile& file : files) names.push_back(file.name);
+  const PhotoNames finder(names);
   // Names of other programs may lack the folder, so that several images seem to be one photo.
-  std::map<size_t, int> claims;
+  std::map<size_t, Claim> claims;
   for (const survey::ColmapImage& image : model.images) {
     const std::optional<size_t> file = finder.Find(image.name);
     if (!file) continue;
-    ++claims[*file];
-    found.emplace(image.id, *file);
+    const bool same_path = names[*file] == image.name;
+    const Claim claim{same_path ? std::numeric_limits<size_t>::max() : finder.CommonParts(image.name, *file), image.id};
+    const auto [known, is_first] = claims.try_emplace(*file, claim);
+    if (is_first || claim.strength < known->second.strength) continue;
+    if (claim.strength > known->second.strength) {
+      known->second = claim;
+    } else {
+      known->second.is_only = false;
+    }
   }
-  std::erase_if(found, [&](const auto& entry) { return claims[entry.second] > 1; });
+  FileOfImage found;
+  for (const auto& [file, claim] : claims) {
+    if (claim.is_only) found.emplace(claim.image, file);
+  }
   return found;
 }
 

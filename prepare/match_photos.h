@@ -22,8 +22,9 @@ struct Registered {
 // Index into the usable photos by the ids of images.
 using FileOfImage = std::map<uint32_t, size_t>;
 
-// The photo of each image, whatever its size: by the full name, otherwise by the file name if it occurs only once on both sides. Images that share a
-// photo have none.
+// The photo of each image, whatever its size, as PhotoNames::Find finds it by the image's name. Of several images that seem to be one photo, the one
+// of the photo's path is it, or else the one whose path has more of its last parts in common with the photo's than any other; none when there are
+// several such. No other image has that photo.
 FileOfImage FindPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files);
 // Those of FindPhotos that can be used. Photos without a file or of another size than their camera are left out with a warning. Throws
 // base::InputError when fewer than kMinPhotos remain; `model_folder` and `photo_root` are for messages.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@ namespace {
 // Even a drone that holds its height, and a receiver that rounds to centimetres, vary more than this.
 constexpr double kSameHeight_m = 0.005;
 constexpr double kSamePlace_m = 1.0;
+constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
 
 // The file, or the one of most of them, that most positions come from; empty: the photos' own tags.
 std::string PositionFile(const std::vector<Station>& stations) {
@@ -57,7 +59,7 @@ HeightTags JudgeHeights(const std::vector<Station>& stations) {
   return 2 * relative.size() > n_gps && !all_zero ? HeightTags::kRelative : HeightTags::kUnknown;
 }
 
-bool AllTagsEqual(const std::vector<Station>& stations) {
+bool TagsAboveOneAnother(const std::vector<Station>& stations) {
   std::optional<geo::EnuFrame> frame;
   for (const Station& station : stations) {
     if (!station.gps) continue;
@@ -69,6 +71,21 @@ bool AllTagsEqual(const std::vector<Station>& stations) {
     }
   }
   return true;
+}
+
+bool AllTagsEqual(const std::vector<Station>& stations) {
+  if (!TagsAboveOneAnother(stations)) return false;
+  const HeightTags heights = JudgeHeights(stations);
+  if (heights == HeightTags::kUnknown) return true;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Station& station : stations) {
+    if (!station.gps) continue;
+    const double height_m = heights == HeightTags::kTagged ? station.gps->height_m : station.relative_altitude_m.value_or(kNoHeight);
+    if (!std::isfinite(height_m)) continue;
+    low = std::min(low, height_m);
+    high = std::max(high, height_m);
+  }
+  return !(high - low > kSamePlace_m);
 }
 
 std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>& stations) {

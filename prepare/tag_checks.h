@@ -17,7 +17,10 @@ HeightTags JudgeHeights(const std::vector<Station>& stations);
 // Whether heights differ as measured ones do, even of a drone that holds its height; true for a single one, false for none.
 bool HeightsVary(const std::vector<double>& heights_m);
 
-// True when all tags are at one place (within a metre).
+// True when latitude and longitude of all tags are those of one place (within a metre), whatever their heights.
+bool TagsAboveOneAnother(const std::vector<Station>& stations);
+
+// True when all tags are at one place, within a metre in height too where JudgeHeights finds heights.
 bool AllTagsEqual(const std::vector<Station>& stations);
 
 // A way in which coordinates are often written wrongly, and the tags as they would be otherwise.

@@ -69,7 +69,7 @@ bool TrainLoop::Run() {
 
 TrainResult TrainLoop::SaveResult(const ContextResults* findings) {
   record_.complete = true;
-  if (good_.Empty()) record_.guard = guard_.state();
+  NoteGuard();
   SaveSession(kind_, job_, target_, trainer_, record_, extras_, findings);
   return Summarise();
 }
@@ -201,9 +201,13 @@ void TrainLoop::Report(double fraction) {
   report_(status);
 }
 
+void TrainLoop::NoteGuard() {
+  if (good_.Empty()) record_.guard = guard_.state();
+}
+
 // Writes the last good state, or before there is one the present state.
 void TrainLoop::Save() {
-  if (good_.Empty()) record_.guard = guard_.state();
+  NoteGuard();
   const auto save = [this] { SaveSession(kind_, job_, target_, trainer_, record_, extras_, nullptr); };
   const int64_t step = good_.Empty() ? trainer_.state().step : good_.step();
   if (step == saved_step_) return;

@@ -48,6 +48,8 @@ class TrainLoop {
   void RecordCounts(const StepResult& step);
   void ReportIfDue(double fraction);
   void Report(double fraction);
+  // Before there is a good state, the present one is saved, with the guard's of now.
+  void NoteGuard();
   void Save();
   void SaveIfDue();
   void MarkUnsampledCells();

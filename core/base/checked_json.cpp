@@ -12,19 +12,11 @@ constexpr int kMaxDepth = 32;
 // How deep lists and objects are nested, without following them.
 int NestingOf(std::string_view text) {
   int depth = 0, deepest = 0;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size(); ++i) {
+  for (size_t i = 0; i < text.size();) {
     const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      in_string = c != '"';
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      deepest = std::max(deepest, ++depth);
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
+    if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+    if (c == ']' || c == '}') --depth;
+    i = c == '"' ? EndOfText(text, i) : i + 1;
   }
   return deepest;
 }
@@ -47,6 +39,12 @@ void RequireLine(const nlohmann::json& value, size_t max_bytes, const std::strin
   if (!good) throw Refused(where + " must be a text of 1 to " + std::to_string(max_bytes) + " bytes");
   const auto& text = value.get_ref<const std::string&>();
   if (std::any_of(text.begin(), text.end(), IsControl)) throw Refused(where + " must be one line");
+}
+
+size_t EndOfText(std::string_view document, size_t begin) {
+  size_t at = begin + 1;
+  while (at < document.size() && document[at] != '"') at += document[at] == '\\' ? 2 : 1;
+  return std::min(at + 1, document.size());
 }
 
 size_t CharactersIn(std::string_view utf8) {

@@ -23,6 +23,10 @@ void RequireNumber(const nlohmann::json& value, const std::string& where);
 // A text of 1 to max_bytes bytes without control characters.
 void RequireLine(const nlohmann::json& value, size_t max_bytes, const std::string& where);
 
+// Where a text of the document ends: behind the closing quote of that whose opening quote is at `begin`, or at the end of the document. For those
+// who look through a document without parsing it.
+size_t EndOfText(std::string_view document, size_t begin);
+
 // Characters (code points) of valid UTF-8.
 size_t CharactersIn(std::string_view utf8);
 // Below space, or delete.

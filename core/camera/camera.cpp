@@ -49,38 +49,6 @@ const ModelInfo& CheckedInfo(const Camera& camera) {
   return info;
 }
 
-Distortion DistortionOf(const Camera& camera) {
-  const std::vector<double>& p = camera.params;
-  switch (camera.model) {
-    case CameraModel::kSimplePinhole:
-    case CameraModel::kPinhole:
-      break;
-    case CameraModel::kSimpleRadial:
-      return Distortion::Perspective({p[3]}, 0.0, 0.0);
-    case CameraModel::kRadial:
-      return Distortion::Perspective({p[3], p[4]}, 0.0, 0.0);
-    case CameraModel::kOpencv:
-      return Distortion::Perspective({p[4], p[5]}, p[6], p[7]);
-    case CameraModel::kOpencvFisheye:
-      return Distortion::Fisheye({p[4], p[5], p[6], p[7]});
-    case CameraModel::kFullOpencv:
-      return Distortion::Perspective({p[4], p[5], p[8], p[9], p[10], p[11]}, p[6], p[7]);
-    case CameraModel::kFov:
-      return Distortion::FieldOfView(p[4]);
-    case CameraModel::kSimpleRadialFisheye:
-      return Distortion::Fisheye({p[3]});
-    case CameraModel::kRadialFisheye:
-      return Distortion::Fisheye({p[3], p[4]});
-    case CameraModel::kThinPrismFisheye:
-      return Distortion::Fisheye({p[4], p[5], p[8], p[9]}, {.p1 = p[6], .p2 = p[7], .prism = {p[10], 0.0, p[11], 0.0}, .sequential = false});
-    case CameraModel::kRadTanThinPrismFisheye:
-      // Its p0 stands where OpenCV's p2 does.
-      return Distortion::Fisheye({p[4], p[5], p[6], p[7], p[8], p[9]},
-                                 {.p1 = p[11], .p2 = p[10], .prism = {p[12], p[13], p[14], p[15]}, .sequential = true});
-  }
-  return Distortion::Perspective({}, 0.0, 0.0);
-}
-
 // The same lens written with two focal lengths.
 Camera WithTwoFocalLengths(const Camera& camera) {
   const std::vector<double>& p = camera.params;
@@ -225,6 +193,39 @@ Camera Camera::Resized(int new_width, int new_height) const {
     resized.params[3] *= scale_y;
   }
   return resized;
+}
+
+Distortion DistortionOf(const Camera& camera) {
+  CheckedInfo(camera);
+  const std::vector<double>& p = camera.params;
+  switch (camera.model) {
+    case CameraModel::kSimplePinhole:
+    case CameraModel::kPinhole:
+      break;
+    case CameraModel::kSimpleRadial:
+      return Distortion::Perspective({p[3]}, 0.0, 0.0);
+    case CameraModel::kRadial:
+      return Distortion::Perspective({p[3], p[4]}, 0.0, 0.0);
+    case CameraModel::kOpencv:
+      return Distortion::Perspective({p[4], p[5]}, p[6], p[7]);
+    case CameraModel::kOpencvFisheye:
+      return Distortion::Fisheye({p[4], p[5], p[6], p[7]});
+    case CameraModel::kFullOpencv:
+      return Distortion::Perspective({p[4], p[5], p[8], p[9], p[10], p[11]}, p[6], p[7]);
+    case CameraModel::kFov:
+      return Distortion::FieldOfView(p[4]);
+    case CameraModel::kSimpleRadialFisheye:
+      return Distortion::Fisheye({p[3]});
+    case CameraModel::kRadialFisheye:
+      return Distortion::Fisheye({p[3], p[4]});
+    case CameraModel::kThinPrismFisheye:
+      return Distortion::Fisheye({p[4], p[5], p[8], p[9]}, {.p1 = p[6], .p2 = p[7], .prism = {p[10], 0.0, p[11], 0.0}, .sequential = false});
+    case CameraModel::kRadTanThinPrismFisheye:
+      // Its p0 stands where OpenCV's p2 does.
+      return Distortion::Fisheye({p[4], p[5], p[6], p[7], p[8], p[9]},
+                                 {.p1 = p[11], .p2 = p[10], .prism = {p[12], p[13], p[14], p[15]}, .sequential = true});
+  }
+  return Distortion::Perspective({}, 0.0, 0.0);
 }
 
 double GroundSamplingDistance(const Camera& camera, double agl_m) {

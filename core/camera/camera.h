@@ -69,6 +69,11 @@ struct Camera {
   Camera Resized(int new_width, int new_height) const;
 };
 
+class Distortion;  // distortion.h
+
+// The distortion of the camera's lens, for those who need more than its rays and pixels.
+Distortion DistortionOf(const Camera& camera);
+
 // GSD: metres per pixel on flat ground straight below a camera that is `agl_m` above it.
 double GroundSamplingDistance(const Camera& camera, double agl_m);
 

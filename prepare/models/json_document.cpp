@@ -46,9 +46,8 @@ class JsonLocator {
   char Peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
   void SkipSpace() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }
   std::string SkipString() {
-    const size_t begin = at_++;
-    while (at_ < text_.size() && text_[at_] != '"') at_ += text_[at_] == '\\' ? 2 : 1;
-    at_ = std::min(at_ + 1, text_.size());
+    const size_t begin = at_;
+    at_ = base::EndOfText(text_, begin);
     const nlohmann::json value = base::TryParseJson(text_.substr(begin, at_ - begin));
     return value.is_string() ? value.get<std::string>() : std::string();
   }
@@ -112,22 +111,20 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNoNumber
 // The text with such numbers in their place, so that all offsets stay; nothing when there are none.
 std::optional<std::string> WithNumbers(const std::string& text) {
   std::optional<std::string> changed;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      in_string = c != '"';
+  for (size_t i = 0; i < text.size();) {
+    if (text[i] == '"') {
+      i = base::EndOfText(text, i);
       continue;
     }
-    in_string = c == '"';
-    for (const auto& [word, number] : kNoNumbers) {
-      if (text.compare(i, word.size(), word) != 0) continue;
-      if (!changed) changed = text;
-      changed->replace(i, number.size(), number);
-      i += word.size() - 1;
-      break;
+    const auto no_number =
+        std::find_if(kNoNumbers.begin(), kNoNumbers.end(), [&](const auto& one) { return text.compare(i, one.first.size(), one.first) == 0; });
+    if (no_number == kNoNumbers.end()) {
+      ++i;
+      continue;
     }
+    if (!changed) changed = text;
+    changed->replace(i, no_number->second.size(), no_number->second);
+    i += no_number->first.size();
   }
   return changed;
 }

@@ -152,8 +152,8 @@ std::vector<uint8_t> GltfDocument::Head(const GltfPlace& place, const std::files
 
   std::string json = base::JsonText(document);
   json.resize((json.size() + 3) / 4 * 4, ' ');
-  constexpr uint64_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
-  const uint64_t total = kHeaderBytes + kChunkHeaderBytes + json.size() + kChunkHeaderBytes + binary_bytes_;
+  constexpr uint64_t kGlbHeaderBytes = 12, kChunkHeaderBytes = 8;
+  const uint64_t total = kGlbHeaderBytes + kChunkHeaderBytes + json.size() + kChunkHeaderBytes + binary_bytes_;
   if (total > max_bytes) {
     throw base::InputError(file,
                            "would have " + std::to_string(total >> 20U) + " MiB; the format ends at " + std::to_string(max_bytes >> 20U) + " MiB",

@@ -63,18 +63,40 @@ TEST(JudgeHeights, TellsTaggedFromRelativeAndUnknown) {
   EXPECT_EQ(JudgeHeights({}), HeightTags::kUnknown);
 }
 
-TEST(AllTagsEqual, AllowsAMetreAndIgnoresHeights) {
-  std::vector<Station> stations = WithHeights({0.0, 100.0, kNan, 0.0});
-  EXPECT_FALSE(AllTagsEqual(stations));
+std::vector<Station> AtOneSpot(const std::vector<double>& height_m, std::optional<double> relative_altitude_m = {}) {
+  std::vector<Station> stations = WithHeights(height_m, relative_altitude_m);
   for (Station& station : stations) station.gps->latitude_deg = 47.0;
+  return stations;
+}
+
+TEST(AllTagsEqual, AllowsAMetreInAllDirections) {
+  EXPECT_FALSE(AllTagsEqual(WithHeights({0.0, 100.0, kNan, 0.0})));
+  std::vector<Station> stations = AtOneSpot({400.0, 400.6, kNan, 399.7});
   EXPECT_TRUE(AllTagsEqual(stations));
   stations[1].gps->longitude_deg += 1e-6;  // 8 cm
   stations[2].gps.reset();
   EXPECT_TRUE(AllTagsEqual(stations));
   stations[3].gps->longitude_deg += 2e-5;  // 1.5 m
   EXPECT_FALSE(AllTagsEqual(stations));
+  EXPECT_FALSE(TagsAboveOneAnother(stations));
   for (size_t i = 0; i < 4; ++i) stations[i].gps = geo::Geodetic{-17.0, i % 2 == 0 ? 180.0 : -180.0, 0.0};
   EXPECT_TRUE(AllTagsEqual(stations));
+}
+
+TEST(AllTagsEqual, TagsAboveOneAnotherDiffer) {
+  EXPECT_FALSE(AllTagsEqual(AtOneSpot({400.0, 410.0, kNan, 420.0})));
+  EXPECT_TRUE(TagsAboveOneAnother(AtOneSpot({400.0, 410.0, kNan, 420.0})));
+  // Three exposures of each of three shots.
+  EXPECT_FALSE(AllTagsEqual(AtOneSpot({400.0, 400.0, 400.0, 402.0, 402.0, 402.0, 404.0, 404.0, 404.0})));
+  EXPECT_TRUE(AllTagsEqual(AtOneSpot({400.0, 400.0, 400.0})));
+  // Heights above take-off count where tags have no other; not where these say nothing.
+  std::vector<Station> relative = AtOneSpot({kNan, kNan, kNan}, 10.0);
+  EXPECT_TRUE(AllTagsEqual(relative));
+  relative[2].relative_altitude_m = 30.0;
+  EXPECT_FALSE(AllTagsEqual(relative));
+  for (Station& station : relative) station.gps->height_m = 0.0;
+  EXPECT_FALSE(AllTagsEqual(relative));
+  EXPECT_TRUE(AllTagsEqual(AtOneSpot({kNan, kNan, kNan})));
 }
 
 TEST(PossibleCoordinateFaults, RepairTheTagsAndStayOnEarth) {
@@ -152,6 +174,84 @@ TEST(PlaceOnEarth, SaysWhyThereIsNoPlace) {
   EXPECT_FALSE(scattered.ok);
   ASSERT_FALSE(scattered.problems.empty());
   EXPECT_TRUE(scattered.problems[0].about_place);
+}
+
+// Photos of a facade from twenty heights 2 m apart, level cameras, within `reach_m` of a vertical line. The tags have noise of `noise_m`.
+std::vector<Station> Column(double reach_m, double noise_m, uint64_t seed) {
+  base::Random random(seed);
+  const geo::Similarity3d model_from_enu = test::RandomFrame(random);
+  const geo::EnuFrame frame({47.0, 8.0, 400.0});
+  std::vector<Station> stations;
+  for (int i = 0; i < 20; ++i) {
+    const Vector3d centre(i % 4 < 2 ? reach_m : -reach_m, i % 2 == 0 ? reach_m : -reach_m, 10.0 + 2.0 * i);
+    stations.push_back(test::StationAt(centre, {.yaw_deg = 30.0, .pitch_deg = 0.0}, model_from_enu));
+    stations.back().name = "facade_" + std::to_string(i) + ".jpg";
+    stations.back().up_in_cam = UpInCamera(0.0, 0.0);
+    const double east = noise_m * random.Normal(), north = noise_m * random.Normal(), up = noise_m * random.Normal();
+    stations.back().gps = frame.GeodeticFromEnu(centre + Vector3d(east, north, up));
+  }
+  return stations;
+}
+
+TEST(PlaceOnEarth, PhotosAboveOneAnotherLeaveNorthOpen) {
+  const auto expect_column = [](const std::vector<Station>& stations, const char* what) {
+    const Georeference result = PlaceOnEarth(stations, {}, {});
+    EXPECT_FALSE(result.ok) << what;
+    ASSERT_EQ(result.problems.size(), 1U) << what;
+    EXPECT_EQ(result.problems[0].code, "one_column") << what << ": " << result.problems[0].finding;
+    EXPECT_TRUE(result.problems[0].about_place);
+    EXPECT_EQ(result.fit.n_matches, static_cast<int>(stations.size()));
+  };
+  expect_column(Column(0.1, 0.1, 11), "tags within a metre of a line");
+  expect_column(Column(0.1, 1.0, 12), "tags with the noise of a receiver");
+  std::vector<Station> stations = Column(0.1, 0.1, 13);
+  for (Station& station : stations) station.gps->height_m = kNan;
+  expect_column(stations, "tags without heights");
+  for (size_t i = 0; i < stations.size(); ++i) stations[i].relative_altitude_m = 2.0 * static_cast<double>(i);
+  expect_column(stations, "heights above take-off");
+}
+
+TEST(PlaceOnEarth, AWallThatIsTakenForTheGroundDoesNotHideAColumn) {
+  std::vector<Station> stations = Column(0.1, 0.1, 18);
+  for (Station& station : stations) station.up_in_cam.reset();
+  base::Random random(18), place(19);
+  const geo::Similarity3d model_from_enu = test::RandomFrame(random);
+  std::vector<Vector3d> wall;
+  for (int i = 0; i < 300; ++i) {
+    const double along = place.Uniform(-20.0, 20.0), up = place.Uniform(0.0, 60.0);
+    // 25 m ahead of the cameras, at right angles to their view.
+    wall.push_back(model_from_enu * Vector3d(12.5 + 0.866 * along, 21.65 - 0.5 * along, up));
+  }
+  const Georeference result = PlaceOnEarth(stations, wall, {});
+  EXPECT_FALSE(result.ok);
+  EXPECT_TRUE(Has(result, "one_column"));
+}
+
+TEST(PlaceOnEarth, AColumnWhoseTagsAreMoreExactThanItsWidthHasAPlace) {
+  const Georeference result = PlaceOnEarth(Column(2.0, 0.02, 14), {}, {});
+  EXPECT_TRUE(result.ok);
+  EXPECT_LT(result.fit.accuracy.yaw_deg, 1.0);
+  EXPECT_FALSE(Has(result, "one_column"));
+}
+
+TEST(PlaceOnEarth, APositionThatStandsStillWhileTheBarometerGoesOnIsNoColumn) {
+  std::vector<Station> stations = Tagged({47.0, 8.0, 400.0}, 15);
+  base::Random random(16);
+  const geo::Geodetic first = *stations[0].gps;
+  for (Station& station : stations) station.gps = geo::Geodetic{first.latitude_deg, first.longitude_deg, first.height_m + 3.0 * random.Normal()};
+  const Georeference result = PlaceOnEarth(stations, {}, {});
+  EXPECT_FALSE(result.ok);
+  ASSERT_EQ(result.problems.size(), 1U);
+  EXPECT_EQ(result.problems[0].code, "equal_tags");
+  EXPECT_NE(result.problems[0].finding.find("differ in height alone"), std::string::npos) << result.problems[0].finding;
+  // Not even when the cameras are on one line.
+  const Georeference line = PlaceOnEarth({stations.begin(), stations.begin() + test::kLine}, {}, {});
+  EXPECT_FALSE(line.ok);
+  EXPECT_TRUE(Has(line, "equal_tags"));
+  // Tags with heights that all but agree are those of one place.
+  std::vector<Station> hovering = Column(0.1, 0.1, 17);
+  for (Station& station : hovering) station.gps->height_m = 400.0 + 0.1 * random.Normal();
+  EXPECT_TRUE(Has(PlaceOnEarth(hovering, {}, {}), "equal_tags"));
 }
 
 TEST(PlaceOnEarth, NamesAStraightLineAndMissingHeights) {

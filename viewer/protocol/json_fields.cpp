@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/base/checked_json.h"
 #include "viewer/protocol/messages.h"
 
 namespace skyquilt::viewer {
@@ -19,19 +20,11 @@ constexpr size_t kQuotedCharacters = 40;
 // Counted before parsing, so that a parser's use of memory for nested values need not be trusted.
 bool IsShallow(std::string_view text) {
   int depth = 0;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size(); ++i) {
+  for (size_t i = 0; i < text.size();) {
     const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kMaxDepth) return false;
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
+    if ((c == '{' || c == '[') && ++depth > kMaxDepth) return false;
+    if (c == '}' || c == ']') --depth;
+    i = c == '"' ? base::EndOfText(text, i) : i + 1;
   }
   return true;
 }

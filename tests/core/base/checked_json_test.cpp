@@ -37,6 +37,17 @@ TEST(CheckedJson, NamesThePlace) {
   EXPECT_EQ(reason([] { RequireLine("<script>", 80, "a"); }), "");
 }
 
+TEST(CheckedJson, FindsTheEndOfATextWithQuotesAndBackslashesInIt) {
+  const auto rest = [](const std::string& document, size_t begin = 0) { return document.substr(EndOfText(document, begin)); };
+  EXPECT_EQ(rest(R"("", 1)"), ", 1");
+  EXPECT_EQ(rest(R"(["a", "b"])", 1), R"(, "b"])");
+  EXPECT_EQ(rest(R"("a \" ]", [)"), ", [");
+  EXPECT_EQ(rest(R"("C:\\", ")"), R"(, ")") << "a backslash before the end that is itself escaped";
+  EXPECT_EQ(rest(R"("\\\"x", 2)"), ", 2");
+  for (const char* open : {"\"", "\"abc", "\"abc\\", "\"abc\\\""}) EXPECT_EQ(EndOfText(open, 0), std::string(open).size()) << open;
+  EXPECT_NO_THROW(ParseDocument(R"("\"[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[")"));
+}
+
 TEST(CheckedJson, CountsCharactersOfAnyScript) {
   EXPECT_EQ(CharactersIn(""), 0U);
   EXPECT_EQ(CharactersIn("abc"), 3U);

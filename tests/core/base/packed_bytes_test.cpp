@@ -19,7 +19,7 @@ std::string SamplePacked() {
   out.Add(true);
   out.Add(std::string("ab\0c", 4));
   out.Add(std::vector<float>{1.5F, kNanFloat, -kInfinityFloat});
-  out.Add(std::array{0.1, kNan, kInfinity});
+  out.Add(std::array<double, 3>{0.1, kNan, kInfinity});
   out.Add(std::string());
   out.Add(std::vector<double>());
   out.AddCount(3);

@@ -110,23 +110,6 @@ Eigen::Vector3d Direction(double angle, double azimuth) {
   return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), std::cos(angle)};
 }
 
-Distortion DistortionFor(const Camera& camera) {
-  const std::vector<double>& p = camera.params;
-  switch (camera.model) {
-    case CameraModel::kFov:
-      return Distortion::FieldOfView(p[4]);
-    case CameraModel::kSimpleRadialFisheye:
-      return Distortion::Fisheye({p[3]});
-    case CameraModel::kRadialFisheye:
-      return Distortion::Fisheye({p[3], p[4]});
-    case CameraModel::kThinPrismFisheye:
-      return Distortion::Fisheye({p[4], p[5], p[8], p[9]}, {.p1 = p[6], .p2 = p[7], .prism = {p[10], 0.0, p[11], 0.0}, .sequential = false});
-    default:
-      return Distortion::Fisheye({p[4], p[5], p[6], p[7], p[8], p[9]},
-                                 {.p1 = p[11], .p2 = p[10], .prism = {p[12], p[13], p[14], p[15]}, .sequential = true});
-  }
-}
-
 RC_GTEST_PROP(ColmapLenses, ProjectAsColmapDoes, ()) {
   for (const CameraModel model : kLenses) {
     const Camera camera = AnyLens(model);
@@ -155,7 +138,7 @@ RC_GTEST_PROP(ColmapLenses, EveryDirectionComesBack, ()) {
 
 RC_GTEST_PROP(ColmapLenses, HaveTheDerivativesOfTheirValue, ()) {
   for (const CameraModel model : kLenses) {
-    const Distortion lens = DistortionFor(AnyLens(model));
+    const Distortion lens = DistortionOf(AnyLens(model));
     // FOV's plane is that of the tangent.
     const double radius = Between(0.0, model == CameraModel::kFov ? 5.0 : kLargestAngle), azimuth = Between(0.0, 2.0 * std::numbers::pi);
     const Eigen::Vector2d at(radius * std::cos(azimuth), radius * std::sin(azimuth));

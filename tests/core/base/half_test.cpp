@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
+
+#include "tests/support/not_finite.h"
 
 namespace skyquilt::base {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 template <typename ToHalf, typename ToFloat>
 void ExpectEveryHalfComesBack(ToHalf to_half, ToFloat to_float, float largest) {
@@ -66,10 +65,10 @@ TEST(Half, RoundsToTheNearestAndTiesToEven) {
 
 TEST(Half, OverflowStaysFinite) {
   for (const float sign : {-1.0F, 1.0F}) {
-    for (const float value : {65504.0F, 65519.0F, 65520.0F, 1e30F, kInfinity}) {
+    for (const float value : {65504.0F, 65519.0F, 65520.0F, 1e30F, kInfinityFloat}) {
       EXPECT_EQ(FloatFromFloat16(Float16FromFloat(sign * value)), sign * kLargestFloat16) << value;
     }
-    for (const float value : {3.4e38F, std::numeric_limits<float>::max(), kInfinity}) {
+    for (const float value : {3.4e38F, std::numeric_limits<float>::max(), kInfinityFloat}) {
       EXPECT_EQ(FloatFromBfloat16(Bfloat16FromFloat(sign * value)), sign * kLargestBfloat16) << value;
     }
   }

@@ -31,7 +31,7 @@ void Throw(const Failure& failure, const std::string& who) {
   if (failure.kind == Failure::kUsage) throw base::UsageError(reason);
   if (failure.file.empty()) throw base::InputError(who.empty() ? "training" : who, failure.reason, "");
   throw base::InputError(failure.file, reason,
-                         who.empty() ? "" : "If the other ranks can use it, that machine sees another disk: all need the same one");
+                         who.empty() ? "" : "All ranks must see the same project folder");
 }
 
 nlohmann::json ToJson(const Failure& failure) {

@@ -47,6 +47,7 @@ void RequireSharedFolder(const nlohmann::json& proof) {
   while (true) {
     try {
       if (base::ReadFile(file) == proof.at("number").get<std::string>()) return;
+      break;
     } catch (const base::InputError&) {
       // Not there, or not yet.
     }

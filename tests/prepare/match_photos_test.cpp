@@ -54,12 +54,5 @@ TEST(FindPhotos, FoldersTellPhotosOfOneNameApart) {
   EXPECT_EQ(PhotosOfImages({"100/1.jpg", "101/1.jpg"}, {"flight/101/1.jpg"}), (NameList{"", "flight/101/1.jpg"}));
 }
 
-TEST(FindPhotos, ModelsOfConvertedPhotosNameThemWithAnotherExtension) {
-  EXPECT_EQ(PhotosOfImages({"1.tif", "2.tif"}, {"1.jpg", "2.jpg"}), (NameList{"1.jpg", "2.jpg"}));
-  // Of two forms of a photo the one with the file name counts.
-  EXPECT_EQ(PhotosOfImages({"1.png", "1.jpg"}, {"a/1.jpg"}), (NameList{"", "a/1.jpg"}));
-  EXPECT_EQ(PhotosOfImages({"1.tif"}, {"1.jpg", "1.png"}), (NameList{""}));
-}
-
 }  // namespace
 }  // namespace skyquilt::prepare

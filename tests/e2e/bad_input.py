@@ -90,10 +90,10 @@ def test(skyquilt, folder):
     unplaced = folder / "unplaced"
     skyquilt.call("simulate", "hamlet", "-o", unplaced, "--image-width", "64", "--set", "simulate.exact_frame=false", "--set", "simulate.tags_equal=true")
     text = skyquilt.call("prepare", unplaced, "-o", folder / "out_unplaced")
-    expect("all GPS tags are at one place" in text, f"the equal tags are not named:\n{text}")
+    expect("all GPS tags have one latitude and longitude" in text, f"the equal tags are not named:\n{text}")
     out_required = folder / "out_required"
     text = skyquilt.call("prepare", unplaced, "-o", out_required, "--set", "prepare.require_georeference=true", status=3)
-    expect("all GPS tags are at one place" in text and "geo_residuals.csv" in text, text)
+    expect("all GPS tags have one latitude and longitude" in text and "geo_residuals.csv" in text, text)
     expect((out_required / "survey" / "geo_residuals.csv").exists(), "there is no table of residuals")
     expect(not (out_required / "survey" / "survey.json").exists(), "a refused survey was saved")
 

@@ -2,6 +2,7 @@
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import time
 
@@ -45,7 +46,8 @@ def test(skyquilt, folder):
     status = process.wait(timeout=300)
     text = log.read_text()
     expect(status == 0, f"ended with {status}:\n{text}")
-    expect("continues on rank 2: rank 1 is slow" in text, text)
+    host = socket.gethostname()
+    expect(f"continues on rank 2 on {host}: rank 1 on {host} is slow" in text, text)
     expect(state_of(skyquilt, slowed) == state_of(skyquilt, whole), "the moved block differs from one that stayed where it was")
 
 

@@ -11,7 +11,7 @@ targets=("${@:2}")
 (( ${#targets[@]} > 0 )) || targets=(colmap config blocks archive exif viewer tour transforms opensfm metashape opf positions text_table picture_header pixels
   gcp_list opensfm_control point_table metashape_markers)
 scripts/setup.sh
-cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DSKYQUILT_FUZZ=ON \
+cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DSKYQUILT_FUZZ=ON -DSKYQUILT_UNITY=ON -DSKYQUILT_PCH=ON \
   -DSKYQUILT_SANITIZE=address,undefined,fuzzer-no-link >/dev/null
 cmake --build build/fuzz --target "${targets[@]/#/fuzz_}" "${targets[@]/#/libfuzz_}"
 failed=0

@@ -17,30 +17,45 @@ constexpr double kSteepEnough = 0.35;      // rays closer to the horizon would s
 struct Splat {
   Eigen::Vector3d x;
   Eigen::Vector3f srgb;
+  int column = 0;  // of its tile
 };
+
+// Of the tiles of a training photo that show the ground, row by row.
+std::vector<Splat> SplatsOf(const RaySource& source, const scene::HeightMap& points, int photo) {
+  std::vector<Splat> splats;
+  const std::vector<Eigen::Vector3f> colors = source.TileColors(photo);
+  for (int row = 0; row < kTileRows; ++row) {
+    for (int column = 0; column < kTileColumns; ++column) {
+      const Eigen::Vector3f& srgb = colors[static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column)];
+      Eigen::Vector3d origin, direction, x;
+      source.RayThrough(photo, source.TileCentre({photo, static_cast<int16_t>(column), static_cast<int16_t>(row)}), &origin, &direction);
+      if (direction.z() > -kSteepEnough || !points.Intersect(origin, direction, &x) || !srgb.allFinite()) continue;
+      splats.push_back({x, srgb, column});
+    }
+  }
+  return splats;
+}
 
 }  // namespace
 
-scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, uint64_t seed) {
+scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, uint64_t seed,
+                                 base::ThreadPool& threads) {
   scene::Background background;
   background.mean_srgb = source.MeanColor(seed);
   if (points.Empty()) return background;
-  std::vector<int> photos;
-  for (size_t i = 0; i < survey.photos.size(); ++i) photos.push_back(static_cast<int>(i));
+  std::vector<std::vector<Splat>> of_photos(survey.photos.size());
+  threads.ParallelFor(static_cast<int64_t>(of_photos.size()), [&](int64_t photo, int) {
+    const auto i = static_cast<size_t>(photo);
+    if (!survey.photos[i].is_test) of_photos[i] = SplatsOf(source, points, static_cast<int>(photo));
+  });
   std::vector<Splat> splats;
   std::vector<double> spacing;
-  std::vector<Eigen::Vector3f> colors;
-  int colors_of = -1;
-  for (const Tile& tile : TrainingTiles(survey, photos)) {
-    if (tile.photo != colors_of) colors = source.TileColors(colors_of = tile.photo);
-    Eigen::Vector3d origin, direction;
-    source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
-    Splat splat;
-    const auto place = static_cast<size_t>(tile.row) * kTileColumns + static_cast<size_t>(tile.column);
-    if (direction.z() > -kSteepEnough || !points.Intersect(origin, direction, &splat.x) || !colors[place].allFinite()) continue;
-    splat.srgb = colors[place];
-    if (tile.column > 0 && !splats.empty()) spacing.push_back((splat.x - splats.back().x).head<2>().norm());
-    splats.push_back(splat);
+  for (std::vector<Splat>& of_photo : of_photos) {
+    for (const Splat& splat : of_photo) {
+      if (splat.column > 0 && !splats.empty()) spacing.push_back((splat.x - splats.back().x).head<2>().norm());
+      splats.push_back(splat);
+    }
+    of_photo = {};
   }
   if (spacing.empty()) return background;
   Eigen::Vector2d low = splats.front().x.head<2>(), high = low;

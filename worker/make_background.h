@@ -9,6 +9,7 @@ namespace skyquilt::worker {
 
 // Projects the mean colours of the training photos' tiles onto `points`, the height map of the sparse points, blurs them over about three tiles (the
 // heights are not more accurate), and interpolates where no photo sees the ground. When the height map is empty, only the mean colour is set.
-scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, uint64_t seed);
+scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, uint64_t seed,
+                                 base::ThreadPool& threads);
 
 }  // namespace skyquilt::worker

@@ -167,7 +167,13 @@ std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
   const auto along = [](int tile, int count, int step, int size) {
     return static_cast<size_t>(std::min(size - 1, (tile * kColorPixels + step) * size / (count * kColorPixels)));
   };
+  static const std::array<float, 256> linear = [] {
+    std::array<float, 256> values{};
+    for (size_t i = 0; i < values.size(); ++i) values[i] = image::LinearFromSrgb(static_cast<float>(i) / 255.0F);
+    return values;
+  }();
   std::vector<Eigen::Vector3f> colors;
+  colors.reserve(static_cast<size_t>(kTileRows) * kTileColumns);
   for (int row = 0; row < kTileRows; ++row) {
     for (int column = 0; column < kTileColumns; ++column) {
       const Tile tile{photo, static_cast<int16_t>(column), static_cast<int16_t>(row)};
@@ -180,8 +186,7 @@ std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
           const size_t pixel = along(row, kTileRows, v, height) * static_cast<size_t>(width) + along(column, kTileColumns, u, width);
           if (!pixels.mask.empty() && pixels.mask[pixel] == 0) continue;
           for (size_t c = 0; c < 3; ++c) {
-            const float light = image::LinearFromSrgb(static_cast<float>(pixels.rgb[3 * pixel + c]) / 255.0F);
-            sum[static_cast<Eigen::Index>(c)] += image::SrgbFromLinear(light / gain[c]);
+            sum[static_cast<Eigen::Index>(c)] += image::SrgbFromLinear(linear[pixels.rgb[3 * pixel + c]] / gain[c]);
           }
           n += 1.0F;
         }
@@ -212,6 +217,7 @@ std::array<float, 3> RaySource::MeanColor(uint64_t seed) const {
 
 std::vector<Tile> TrainingTiles(const survey::Survey& survey, const std::vector<int>& photos) {
   std::vector<Tile> tiles;
+  tiles.reserve(photos.size() * kTileRows * kTileColumns);
   for (const int photo : photos) {
     if (survey.photos[static_cast<size_t>(photo)].is_test) continue;
     for (int row = 0; row < kTileRows; ++row) {

@@ -53,6 +53,6 @@ std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const sur
 // Sets the tiles from which the source draws a block's rays: those of `tiles` whose surface is inside the block's ground plan, and as empty tiles
 // those whose surface is behind the block. Without a context (null) all tiles whose centre ray crosses the block's box.
 void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, const render::TrainedField& target, const LoadedContext* context,
-                 double empty_ray_share, RaySource& source);
+                 double empty_ray_share, RaySource& source, base::ThreadPool& threads);
 
 }  // namespace skyquilt::worker

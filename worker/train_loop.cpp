@@ -51,6 +51,7 @@ TrainLoop::TrainLoop(const std::string& kind, const TrainJob& job, render::Train
 
 bool TrainLoop::Run() {
   last_ = last_save_ = last_report_ = Now();
+  seconds_before_ = record_.seconds;
   for (double fraction = Fraction(); fraction < 1.0; fraction = Fraction()) {
     if (record_.ended_early) break;
     if (base::CancelRequested()) {
@@ -193,6 +194,7 @@ void TrainLoop::Report(double fraction) {
   status.fraction = std::min(1.0, fraction);
   status.total_steps = total_steps_ > 0 ? total_steps_ : static_cast<int64_t>(static_cast<double>(status.step) / std::max(1e-3, fraction));
   status.seconds = record_.seconds;
+  status.run_seconds = std::max(0.0, record_.seconds - seconds_before_);
   status.loss = loss_;
   status.psnr_db = RunningPsnr(record_);
   status.rays_per_second = recent_.rays / std::max(1e-6, recent_.seconds);

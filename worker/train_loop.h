@@ -61,6 +61,7 @@ class TrainLoop {
   FieldTrainer& trainer_;
   const ContextBrightness* extras_;
   SessionRecord record_;
+  double seconds_before_ = 0.0;  // of training, in earlier runs
   const Reporter& report_;
   int64_t total_steps_;  // 0: a time budget decides
   // Times of the last step's end, the last checkpoint and the last report, in seconds of a steady clock.

@@ -131,7 +131,8 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   TrainLoop loop("context", job, target, trainer, &extras, record, report);
   if (!loop.Run()) return loop.Failure();
   if (job.learn.Gains()) brightness::PredictGains(brightness::CapturedPhotos(*job.survey), response);
-  const ContextResults findings{SurfaceIntervals(source, *job.survey, target, threads), MakeBackground(source, *job.survey, surface, job.seed)};
+  const ContextResults findings{SurfaceIntervals(source, *job.survey, target, threads),
+                                MakeBackground(source, *job.survey, surface, job.seed, threads)};
   return loop.SaveResult(&findings);
 }
 
@@ -161,7 +162,7 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
   RaySource source(*job.survey, *job.pixels, loaded.response);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
   const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, block.photos, surface, job.min_views, threads);
-  ChooseTiles(*job.survey, tiles, target, context, job.options.empty_ray_share, source);
+  ChooseTiles(*job.survey, tiles, target, context, job.options.empty_ray_share, source, threads);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo shows a surface inside block " + block.name;

@@ -27,9 +27,10 @@ namespace skyquilt::worker {
 // Progress of a training.
 struct TrainStatus {
   int64_t step = 0;
-  int64_t total_steps = 0;  // expected; a time budget refines it
-  double fraction = 0.0;    // of the budget, 0..1
-  double seconds = 0.0;     // training time so far, earlier runs included
+  int64_t total_steps = 0;   // expected; a time budget refines it
+  double fraction = 0.0;     // of the budget, 0..1
+  double seconds = 0.0;      // training time so far, earlier runs included
+  double run_seconds = 0.0;  // of this run alone
   double loss = 0.0;
   double psnr_db = 0.0;  // of recent training rays
   double rays_per_second = 0.0;

@@ -1,5 +1,6 @@
 #include "coordinator/scheduler/field_job.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <limits>
@@ -67,10 +68,9 @@ FieldOutcome RunField(const FieldTrainer& trainer, const FieldJob& job, const wo
   outcome.threads = threads;
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed_s = [&start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  bool steps = false;
+  double trained_s = 0.0;
   const worker::Reporter timed = [&](const worker::TrainStatus& status) {
-    if (!steps) outcome.setup_s = elapsed_s();
-    steps = true;
+    trained_s = status.run_seconds;
     if (report) report(status);
   };
   try {
@@ -80,7 +80,7 @@ FieldOutcome RunField(const FieldTrainer& trainer, const FieldJob& job, const wo
     outcome.failure = CurrentFailure();
   }
   outcome.wall_s = elapsed_s();
-  if (!steps) outcome.setup_s = outcome.wall_s;
+  outcome.setup_s = std::max(0.0, outcome.wall_s - trained_s);
   outcome.peak_rss_bytes = base::PeakRssBytes();
   return outcome;
 }

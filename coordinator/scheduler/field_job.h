@@ -28,7 +28,7 @@ struct FieldOutcome {
   int rank = 0;
   int threads = 1;
   double wall_s = 0.0;
-  double setup_s = 0.0;  // of it, until the first step
+  double setup_s = 0.0;  // of it, what was not training: set-up, and what is measured and saved after the last step
   int64_t peak_rss_bytes = 0;
   std::string saved = {};  // FileStamp of the finished field's checkpoint on that machine; empty when it trained on rank 0
 };

@@ -121,7 +121,8 @@ TEST_F(ViewCountTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
 
 TEST_F(ViewCountTest, TheBackgroundShowsCoarseColoursWhereOnePhotoLookedAndNearOnesWhereNoneDid) {
   Photograph(48.0);
-  const scene::Background background = MakeBackground(*source_, survey_, SurfaceOfPoints(survey_), 1);
+  base::ThreadPool threads(2);
+  const scene::Background background = MakeBackground(*source_, survey_, SurfaceOfPoints(survey_), 1, threads);
   const auto down_at = [&](double x) { return background.Color({x, 0.0, 50.0}, {0.0, 0.0, -1.0}); };
   EXPECT_NEAR(down_at(-24.0)[0], 150.0F / 255.0F, 0.01F) << "the checkerboard is blurred";
   EXPECT_NEAR(down_at(-24.0)[1], 80.0F / 255.0F, 0.01F);
@@ -129,7 +130,7 @@ TEST_F(ViewCountTest, TheBackgroundShowsCoarseColoursWhereOnePhotoLookedAndNearO
   EXPECT_NEAR(down_at(80.0)[1], 80.0F / 255.0F, 0.01F);
   EXPECT_NEAR(down_at(-300.0)[1], 80.0F / 255.0F, 0.02F) << "beyond the photos the colour of their edge is continued";
   EXPECT_EQ(background.Color({0.0, 0.0, 50.0}, {1.0, 0.0, 0.1}), background.mean_srgb) << "the sky";
-  const scene::Background flat = MakeBackground(*source_, survey_, {}, 1);
+  const scene::Background flat = MakeBackground(*source_, survey_, {}, 1, threads);
   EXPECT_EQ(flat.Color({0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}), flat.mean_srgb) << "without points";
 }
 

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "core/base/errors.h"
 #include "core/base/json_text.h"
@@ -67,6 +69,31 @@ TEST(FieldJob, StatusWithANonFiniteLossIsSent) {
   status.step = 7;
   status.loss = std::numeric_limits<double>::infinity();
   EXPECT_EQ(StatusFromText(ToText(status)).step, 7);
+}
+
+// A time budget is for training: what comes before the first step and after the last one is not part of it.
+TEST(RunField, TellsTrainingFromSetUp) {
+  const FieldTrainer trainer = [](const FieldJob&, const worker::Reporter& report) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    // Resumed: ten seconds were trained in an earlier run, and twenty milliseconds now.
+    for (const double run_s : {0.01, 0.02}) {
+      worker::TrainStatus status;
+      status.seconds = 10.0 + run_s;
+      status.run_seconds = run_s;
+      report(status);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    worker::TrainResult result;
+    result.ok = true;
+    return result;
+  };
+  const FieldOutcome outcome = RunField(trainer, {}, kSilent, 1, 2);
+  EXPECT_NEAR(outcome.setup_s, outcome.wall_s - 0.02, 1e-9);
+  EXPECT_GE(outcome.setup_s, 0.1);
+  EXPECT_EQ(OutcomeFromText(ToText(outcome)).setup_s, outcome.setup_s);
+  // Nothing was trained.
+  const FieldOutcome finished = RunField([](const FieldJob&, const worker::Reporter&) { return worker::TrainResult(); }, {}, kSilent, 1, 2);
+  EXPECT_EQ(finished.setup_s, finished.wall_s);
 }
 
 TEST(RunField, EveryExceptionBecomesAnOutcome) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/base/log.h"
 #include "evaluate/surface_decks.h"
 #include "evaluate/surface_distances.h"
 #include "evaluate/surface_json.h"
@@ -16,6 +17,7 @@ void AddScoresInSpace(const EvaluateInput& input, const SurfaceMesh& mesh, const
   std::error_code ignored;
   // A local frame has no metres and no north to compare with.
   if (!survey.truth || !survey.georeferenced || !std::filesystem::is_regular_file(survey.truth->surface_ply, ignored)) return;
+  base::LogInfo("the mesh is compared with the true surface");
   const TrueSurface truth = ReadTrueSurface(survey.truth->surface_ply, survey.origin);
   const std::vector<geo::BlockBox>& boxes = scorer.area().boxes;
   const SeenSurface seen(truth, scorer.training(), scorer.views(), boxes);

@@ -30,8 +30,7 @@ void Throw(const Failure& failure, const std::string& who) {
   if (failure.kind == Failure::kInterrupted) throw base::Interrupted();
   if (failure.kind == Failure::kUsage) throw base::UsageError(reason);
   if (failure.file.empty()) throw base::InputError(who.empty() ? "training" : who, failure.reason, "");
-  throw base::InputError(failure.file, reason,
-                         who.empty() ? "" : "All ranks must see the same project folder");
+  throw base::InputError(failure.file, reason, who.empty() ? "" : "All ranks must see the same project folder");
 }
 
 nlohmann::json ToJson(const Failure& failure) {

@@ -16,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kTerminalInterval_s = 0.2;
-constexpr double kFileInterval_s = 10.0;
+constexpr double kFileInterval_s = 8.0;  // a log is never silent for ten seconds
 constexpr int kBarWidth = 24;
 
 std::atomic<bool> quiet_everywhere{false};

@@ -1,5 +1,5 @@
 // Shows the progress of long work in one line: bar, percentage, rate, elapsed and remaining time, and a free text.
-// On a terminal the line is redrawn in place; in a file a new line is written about every 10 s. Nothing is shown when quiet. Thread-safe.
+// On a terminal the line is redrawn in place; in a file a new line is written about every 8 s. Nothing is shown when quiet. Thread-safe.
 #pragma once
 
 #include <memory>

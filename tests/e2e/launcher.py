@@ -1,5 +1,5 @@
 """scripts/skyquilt-mpirun: restarts after a rank that was lost or stands still, gives up after the last restart, does not retry final results and passes
-on signals. Machines that see different disks."""
+on signals. Machines that see different disks, and containers on one disk."""
 import os
 import pathlib
 import shutil
@@ -28,6 +28,20 @@ def check_other_disk(skyquilt, folder, project):
     for words in (str(project / "checkpoints"), f"rank 1 on {socket.gethostname()}", "disk that all machines share"):
         expect(words in done.stdout, f"'{words}' is missing:\n{done.stdout}")
     expect("--restart" not in done.stdout and not list(project.glob("checkpoints/*.h5")), f"it trained, or advises to train anew:\n{done.stdout}")
+
+
+def check_containers(skyquilt, project):
+    """In containers every program has process number 1: what one that was killed has left is in nobody's way, and stays."""
+    left = [project / ".state" / f".{name}.json.tmp.1.{n}" for name in ("partition", "prepare") for n in range(40)]
+    for path in left:
+        path.write_text("another's")
+    command = ["unshare", "-pf", skyquilt.program, "partition", str(project), "--restart", "--blocks", "1x2"]
+    if subprocess.run(["unshare", "-pf", "true"], stderr=subprocess.DEVNULL).returncode != 0:
+        print("containers: skipped, no right to make a process namespace")
+        return
+    done = subprocess.run(command, env=skyquilt.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)
+    expect(done.returncode == 0, f"ended with {done.returncode}:\n{done.stdout}")
+    expect(all(path.exists() for path in left), "a file that another process made was removed")
 
 
 def test(skyquilt, folder):
@@ -68,6 +82,7 @@ def test(skyquilt, folder):
     expect(state_of(skyquilt, project) == state_of(skyquilt, whole), "after a standstill the result differs from undisturbed")
 
     check_other_disk(skyquilt, folder, small_project(skyquilt, folder / "disk"))
+    check_containers(skyquilt, small_project(skyquilt, folder / "containers"))
 
     # A signal to the launcher makes the ranks save and end.
     project = small_project(skyquilt, folder / "stopped")

@@ -85,9 +85,9 @@ Surroundings SurroundingsOf(const std::vector<Vector3d>& points, const NearestPo
   return result;
 }
 
-class Grower {
+class RegionGrowth {
  public:
-  Grower(const std::vector<Vector3d>& points, double gsd_m)
+  RegionGrowth(const std::vector<Vector3d>& points, double gsd_m)
       : points_(points), gsd_m_(gsd_m), tried_(points.size(), false), taken_(points.size(), false), member_of_(points.size(), 0) {
     const NearestPoints tree(points);
     around_.reserve(points.size());
@@ -222,7 +222,7 @@ class Grower {
 
 std::vector<PlaneRegion> GrowPlanes(const std::vector<Vector3d>& points, double gsd_m) {
   if (points.size() < static_cast<size_t>(kFewestRegionPoints)) return {};
-  return Grower(points, gsd_m).Run();
+  return RegionGrowth(points, gsd_m).Run();
 }
 
 }  // namespace skyquilt::worker

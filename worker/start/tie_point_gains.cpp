@@ -55,8 +55,8 @@ bool LightAround(const image::PixelCache& pixels, size_t photo, const Eigen::Vec
   return true;
 }
 
-std::vector<Sighting> Look(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
-                           const brightness::Response& response, base::ThreadPool& threads) {
+std::vector<Sighting> FindSightings(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
+                                    const brightness::Response& response, base::ThreadPool& threads) {
   const size_t stride = std::max<size_t>(1, survey.points.size() / kMostPoints);
   std::vector<std::vector<Sighting>> per_photo(survey.photos.size());
   threads.ParallelFor(static_cast<int64_t>(survey.photos.size()), [&](int64_t task, int) {
@@ -205,7 +205,7 @@ bool KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sigh
 bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                         const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads) {
   if (!learn.Gains() && !learn.vignetting) return false;
-  const std::vector<Sighting> sightings = Look(survey, pixels, source, response, threads);
+  const std::vector<Sighting> sightings = FindSightings(survey, pixels, source, response, threads);
   const auto n = static_cast<Eigen::Index>(survey.photos.size());
   std::array<Eigen::VectorXd, 3> gains;
   std::array<std::vector<double>, 3> weight;

@@ -27,13 +27,12 @@ FieldStep::FieldStep(const render::TrainedField& target, const field::HashField&
     : field_(field),
       luminance_(luminance.luminance),
       state_(luminance.start),
-      controls_mean_(luminance.controls_mean),
       threads_(threads),
       times_(times),
       optimizer_(field, threads),
+      shared_{target, field, context, weights_, luminance_, state_, luminance.controls_mean},
       read_ahead_(static_cast<size_t>(threads.size())) {
-  const PacketShared shared{target, field, context, weights_, luminance_, state_, controls_mean_};
-  for (int i = 0; i < threads.size(); ++i) trainers_.push_back(std::make_unique<PacketTrainer>(shared, times, i));
+  for (int i = 0; i < threads.size(); ++i) trainers_.push_back(std::make_unique<PacketTrainer>(shared_, times, i));
 }
 
 void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
@@ -179,7 +178,7 @@ void FieldStep::ClipNetworkGradient(field::OptimizerState& state, StepResult& re
 }
 
 void FieldStep::UpdateRunningMeans(const LossSums& sums) {
-  if (!luminance_.On() || !controls_mean_) return;
+  if (!luminance_.On() || !shared_.controls_mean) return;
   if (sums.color_rays > 0) {
     const double shown = sums.shown / (3.0 * static_cast<double>(sums.color_rays));
     state_.mean_shown += kMeansFollow * (shown - state_.mean_shown);

@@ -84,11 +84,11 @@ class FieldStep {
   const field::HashField& field_;
   brightness::Luminance luminance_;
   brightness::LuminanceState state_;
-  bool controls_mean_;
   base::ThreadPool& threads_;
   PhaseTimes& times_;
   field::Optimizer optimizer_;
   field::NetworkWeights weights_;
+  PacketShared shared_;
   std::vector<std::unique_ptr<PacketTrainer>> trainers_;  // per thread
   std::vector<float> read_ahead_;                         // per thread
   std::vector<float> features_;                           // per packet; overwritten by their gradient

@@ -1,11 +1,11 @@
-// With a concealing field (core/brightness/luminance.h): computes the loss of every ray from its samples, and the gradients by these.
+#include "worker/step/packet_concealed.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/image/srgb.h"
-#include "core/render/composite.h"
+#include "core/render/concealed.h"
 #include "worker/losses/loss.h"
-#include "worker/step/packet_trainer.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -19,38 +19,62 @@ render::Concealing ConcealingOf(const brightness::Luminance& luminance) {
 
 }  // namespace
 
-// Computes Omega and linear light of the samples, and both renderings of every ray.
-void PacketTrainer::ComposeConcealed() {
-  const auto live = static_cast<size_t>(live_);
-  rays_.clear();
-  for (size_t k = 0; k < views_.size(); ++k) {
-    rays_.push_back({views_[k].begin, views_[k].count, Ray(k).patch});
+void PacketConcealed::Add(PacketSamples& s, float* network_gradient, LossSums& sums) {
+  Compose(s);
+  const ConcealedTask task = TaskOfRays();
+  for (size_t k = 0; k < s.views.size(); ++k) {
+    const BatchRay& r = s.Ray(k);
+    const RayView& view = s.views[k];
+    const ConcealedRay& composed = concealed_[k];
+    ConcealedGradient gradient;
+    weight_gradient_.assign(static_cast<size_t>(view.count), 0.0F);
+    if (r.ray.empty) {
+      gradient.plain.transmittance = LossOfEmptyRay(composed.plain.transmittance, s.step->ray_share, sums);
+    } else {
+      gradient = LossOfConcealedRay(r, view, composed, task, s.step->ray_share, sums);
+      s.KeepGainGradient(k, gradient.plain);
+      gradient.log_share = LossOfShares(concealed_, k, task.mean_log_gain, sums) * s.step->ray_share;
+      if (composed.solid) {
+        sums.log_share += static_cast<double>(composed.log_share);
+        ++sums.solid_rays;
+      }
+      if (PacketDistortion::Wanted(s, k)) distortion_.Add(s, view, weight_gradient_.data(), sums);
+    }
+    Scatter(s, view, composed, gradient);
   }
-  const float* luminance = a_.color_raw + 3 * a_.stride;
-  convolution_.Pair(rays_, step_->batch.t.data() + packet_->begin, live_);
-  convolution_.Forward(luminance, shared_.weights.luminance);
+  const size_t luminance = 3 * s.a.stride;
+  convolution_.Backward(s.a.color_raw + luminance, shared_.weights.luminance, omega_gradient_.data(), s.a.color_gradient + luminance,
+                        network_gradient + shared_.field.LuminanceOffset());
+}
+
+void PacketConcealed::Compose(PacketSamples& s) {
+  const size_t live = static_cast<size_t>(s.live), stride = s.a.stride;
+  rays_.clear();
+  for (size_t k = 0; k < s.views.size(); ++k) rays_.push_back({s.views[k].begin, s.views[k].count, s.Ray(k).patch});
+  convolution_.Pair(rays_, s.Distances(), s.live);
+  convolution_.Forward(s.a.color_raw + 3 * stride, shared_.weights.luminance);
   for (auto* v : {&share_, &share_gradient_, &omega_gradient_}) Grow(*v, live);
-  for (auto* v : {&light_, &light_slope_}) Grow(*v, 3 * a_.stride);
+  for (auto* v : {&light_, &light_slope_}) Grow(*v, 3 * stride);
   for (size_t c = 0; c < 3; ++c) {
-    for (size_t i = c * a_.stride; i < c * a_.stride + live; ++i) {
-      light_[i] = image::LinearFromSrgb(rgb_[i]);
-      light_slope_[i] = image::LinearSlope(rgb_[i]);
+    for (size_t i = c * stride; i < c * stride + live; ++i) {
+      light_[i] = image::LinearFromSrgb(s.rgb[i]);
+      light_slope_[i] = image::LinearSlope(s.rgb[i]);
     }
   }
   concealed_.clear();
-  for (size_t k = 0; k < views_.size(); ++k) concealed_.push_back(ComposeConcealedRay(views_[k], rays_[k].patch));
+  for (size_t k = 0; k < s.views.size(); ++k) concealed_.push_back(ComposeRay(s, k));
 }
 
-ConcealedRay PacketTrainer::ComposeConcealedRay(const RayView& view, int64_t patch) {
-  const auto begin = static_cast<size_t>(view.begin), count = static_cast<size_t>(view.count);
+ConcealedRay PacketConcealed::ComposeRay(PacketSamples& s, size_t view) {
+  const auto begin = static_cast<size_t>(rays_[view].begin), count = static_cast<size_t>(rays_[view].count);
   ConcealedRay composed;
-  composed.patch = patch;
-  composed.plain = Compose(view);
+  composed.patch = rays_[view].patch;
+  composed.plain = s.Compose(s.views[view]);
   render::LightShares(ConcealingOf(shared_.luminance), static_cast<int>(count), convolution_.omega().data() + begin, share_.data() + begin);
   for (size_t i = 0; i < count; ++i) {
-    const float seen = weight_[begin + i] * share_[begin + i];
+    const float seen = s.weight[begin + i] * share_[begin + i];
     composed.shown_weight += seen;
-    for (size_t c = 0; c < 3; ++c) composed.light[c] += seen * light_[c * a_.stride + begin + i];
+    for (size_t c = 0; c < 3; ++c) composed.light[c] += seen * light_[c * s.a.stride + begin + i];
   }
   const float transmittance = composed.plain.transmittance;
   composed.solid = transmittance < 1.0F - kSolidOpacity && composed.shown_weight > 0.0F;
@@ -58,7 +82,7 @@ ConcealedRay PacketTrainer::ComposeConcealedRay(const RayView& view, int64_t pat
   return composed;
 }
 
-ConcealedTask PacketTrainer::TaskOfRays() const {
+ConcealedTask PacketConcealed::TaskOfRays() const {
   ConcealedTask task;
   task.under = shared_.luminance.mode == brightness::LuminanceMode::kUnder;
   task.mean_share = static_cast<float>(std::exp(shared_.means.mean_log_gain));
@@ -68,43 +92,15 @@ ConcealedTask PacketTrainer::TaskOfRays() const {
   return task;
 }
 
-void PacketTrainer::ConcealAndLoss(float* network_gradient, LossSums& sums) {
-  ComposeConcealed();
-  const ConcealedTask task = TaskOfRays();
-  for (size_t k = 0; k < views_.size(); ++k) {
-    const BatchRay& r = Ray(k);
-    const RayView& view = views_[k];
-    const ConcealedRay& composed = concealed_[k];
-    ConcealedGradient gradient;
-    weight_gradient_.assign(static_cast<size_t>(view.count), 0.0F);
-    if (r.ray.empty) {
-      gradient.plain.transmittance = LossOfEmptyRay(composed.plain.transmittance, step_->ray_share, sums);
-    } else {
-      gradient = LossOfConcealedRay(r, view, composed, task, step_->ray_share, sums);
-      KeepGainGradient(k, gradient.plain);
-      gradient.log_share = LossOfShares(concealed_, k, task.mean_log_gain, sums) * step_->ray_share;
-      if (composed.solid) {
-        sums.log_share += static_cast<double>(composed.log_share);
-        ++sums.solid_rays;
-      }
-      if (WantsDistortionLoss(r, view)) AddDistortion(view, sums);
-    }
-    ScatterConcealed(view, composed, gradient);
-  }
-  convolution_.Backward(a_.color_raw + 3 * a_.stride, shared_.weights.luminance, omega_gradient_.data(), a_.color_gradient + 3 * a_.stride,
-                        network_gradient + shared_.field.LuminanceOffset());
-  FinishGradients();
-}
-
 // weight_gradient_ already holds the gradient of the distortion loss, or zeros.
-void PacketTrainer::ScatterConcealed(const RayView& view, const ConcealedRay& composed, const ConcealedGradient& gradient) {
-  const auto begin = static_cast<size_t>(view.begin), count = static_cast<size_t>(view.count);
-  const float* weights = weight_.data() + begin;
+void PacketConcealed::Scatter(PacketSamples& s, const RayView& view, const ConcealedRay& composed, const ConcealedGradient& gradient) {
+  const size_t begin = static_cast<size_t>(view.begin), count = static_cast<size_t>(view.count), stride = s.a.stride;
+  const float* weights = s.weight.data() + begin;
   const float per_shown = composed.shown_weight > 0.0F ? gradient.log_share / composed.shown_weight : 0.0F;
   for (size_t i = 0; i < count; ++i) {
     float all = 0.0F, omega_only = per_shown;
     for (size_t c = 0; c < 3; ++c) {
-      const float light = light_[c * a_.stride + begin + i];
+      const float light = light_[c * stride + begin + i];
       all += gradient.light[c] * light;
       omega_only += gradient.share_light[c] * light;
     }
@@ -113,10 +109,10 @@ void PacketTrainer::ScatterConcealed(const RayView& view, const ConcealedRay& co
   }
   render::LightSharesBackward(ConcealingOf(shared_.luminance), static_cast<int>(count), convolution_.omega().data() + begin, share_.data() + begin,
                               share_gradient_.data() + begin, omega_gradient_.data() + begin);
-  ScatterComposed(view, composed.plain, gradient.plain, weight_gradient_.data());
+  s.Scatter(view, composed.plain, gradient.plain, weight_gradient_.data());
   for (size_t c = 0; c < 3; ++c) {
     for (size_t i = 0; i < count; ++i) {
-      a_.color_gradient[c * a_.stride + begin + i] += gradient.light[c] * weights[i] * share_[begin + i] * light_slope_[c * a_.stride + begin + i];
+      s.a.color_gradient[c * stride + begin + i] += gradient.light[c] * weights[i] * share_[begin + i] * light_slope_[c * stride + begin + i];
     }
   }
 }

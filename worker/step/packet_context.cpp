@@ -1,6 +1,6 @@
-// Renders the context along a packet's rays in front of the block's ground plan and, where light passes through the block, behind it.
+#include "worker/step/packet_context.h"
+
 #include "core/render/march.h"
-#include "worker/step/packet_trainer.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -10,20 +10,31 @@ constexpr float kOpaqueTau = 4.0F;
 
 }  // namespace
 
-void PacketTrainer::RenderContext() {
-  if (shared_.context == nullptr) return;
+PacketContext::PacketContext(const PacketShared& shared)
+    : shared_(shared), renderer_({{}, shared.context}, render::EngineOptions::For(shared.luminance)) {}
+
+void PacketContext::Render(PacketSamples& s) {
   pieces_.clear();
   owner_.clear();
-  for (size_t k = 0; k < views_.size(); ++k) {
-    if (!Ray(k).ray.empty) AddContextRays(k);
+  for (size_t k = 0; k < s.views.size(); ++k) {
+    if (!s.Ray(k).ray.empty) AddPieces(s, k);
   }
   colors_.resize(pieces_.size());
-  context_->Render(pieces_, colors_);
-  StoreContextColors();
+  renderer_.Render(pieces_, colors_);
+  for (size_t i = 0; i < pieces_.size(); ++i) {
+    RayView& view = s.views[owner_[i].first];
+    const bool behind = owner_[i].second;
+    for (size_t c = 0; c < 3; ++c) {
+      (behind ? view.behind_rgb : view.front_rgb)[c] = colors_[i].rgb_srgb[c];
+      (behind ? view.behind_light : view.front_light)[c] = colors_[i].concealed_light[c];
+    }
+    // Behind the context there is the random background colour.
+    (behind ? view.background_share : view.front_transmittance) = 1.0F - colors_[i].opacity;
+  }
 }
 
-void PacketTrainer::AddContextRays(size_t view) {
-  const PixelRay& ray = Ray(view).ray;
+void PacketContext::AddPieces(const PacketSamples& s, size_t view) {
+  const PixelRay& ray = s.Ray(view).ray;
   const float pitch = shared_.context->config.Cones() ? ray.pixel_pitch : 0.0F;
   const geo::Interval all = render::FieldInterval(shared_.context->map, ray.origin_enu, ray.direction_enu);
   if (all.Empty()) return;
@@ -33,23 +44,10 @@ void PacketTrainer::AddContextRays(size_t view) {
     owner_.emplace_back(view, false);
   }
   float tau = 0.0F;
-  for (int64_t i = 0; i < views_[view].count; ++i) tau += tau_[static_cast<size_t>(views_[view].begin + i)];
+  for (int64_t i = 0; i < s.views[view].count; ++i) tau += s.tau[static_cast<size_t>(s.views[view].begin + i)];
   if (tau < kOpaqueTau && all.t_far > plan.t_far) {
     pieces_.push_back({ray.origin_enu, ray.direction_enu, plan.t_far, all.t_far, pitch});
     owner_.emplace_back(view, true);
-  }
-}
-
-void PacketTrainer::StoreContextColors() {
-  for (size_t i = 0; i < pieces_.size(); ++i) {
-    RayView& view = views_[owner_[i].first];
-    const bool behind = owner_[i].second;
-    for (size_t c = 0; c < 3; ++c) {
-      (behind ? view.behind_rgb : view.front_rgb)[c] = colors_[i].rgb_srgb[c];
-      (behind ? view.behind_light : view.front_light)[c] = colors_[i].concealed_light[c];
-    }
-    // Behind the context there is the random background colour.
-    (behind ? view.background_share : view.front_transmittance) = 1.0F - colors_[i].opacity;
   }
 }
 

@@ -1,5 +1,5 @@
-// Losses of the distances at which rays end: rays of one segment of a photo end on a plane, and on a level or vertical one when it nearly is; rays
-// that end near a plane of sparse points end on it; rays towards a sparse point end there.
+#include "worker/step/packet_ends.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,7 +8,6 @@
 #include "worker/losses/point_depth_loss.h"
 #include "worker/losses/robust_loss.h"
 #include "worker/planes/plane_fit.h"
-#include "worker/step/packet_trainer.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -44,75 +43,69 @@ RayEnd EndOf(size_t n, const float* weights, const float* stops, double voxel_m)
 
 }  // namespace
 
-// A sample stands in the middle of its interval, but a dense one stops the light near the front. Without the difference, surfaces would come to lie
-// too near to the camera, by up to half a step.
-void PacketTrainer::FindStops() {
-  if (!step_->priors.Distances()) return;
-  const auto n = static_cast<size_t>(live_);
+void PacketEnds::Find(const PacketSamples& s, LossSums& sums) {
+  const StepPriors& priors = s.step->priors;
+  // A sample stands in the middle of its interval, but a dense one stops the light near the front. Without the difference, surfaces would come to lie
+  // too near to the camera, by up to half a step.
+  const auto n = static_cast<size_t>(s.live);
   Grow(stops_, n);
-  const float* t = step_->batch.t.data() + packet_->begin;
+  const float* t = s.Distances();
   const auto step_m = static_cast<float>(shared_.target.step_m);
-  for (size_t i = 0; i < n; ++i) stops_[i] = t[i] + step_m * (render::MeanStop(tau_[i]) - 0.5F);
-}
-
-void PacketTrainer::AddEndLosses(LossSums& sums) {
-  distance_gradient_.clear();
-  ends_.clear();
-  const StepPriors& priors = step_->priors;
-  if (!priors.Ends()) return;
-  distance_gradient_.assign(views_.size(), 0.0F);
-  ends_.assign(views_.size(), {});
+  for (size_t i = 0; i < n; ++i) stops_[i] = t[i] + step_m * (render::MeanStop(s.tau[i]) - 0.5F);
+  distance_gradient_.assign(s.views.size(), 0.0F);
+  ends_.assign(s.views.size(), {});
   const bool everywhere = priors.planes > 0.0 && priors.known_planes != nullptr;
-  for (size_t k = 0; k < views_.size(); ++k) {
-    const BatchRay& r = Ray(k);
+  for (size_t k = 0; k < s.views.size(); ++k) {
+    const BatchRay& r = s.Ray(k);
     // A pixel of a reduced photo may show several surfaces.
     if (r.ray.empty || r.ray.level != 0 || !(everywhere || r.segment >= 0)) continue;
-    const RayView& view = views_[k];
-    ends_[k] = EndOf(static_cast<size_t>(view.count), weight_.data() + view.begin, stops_.data() + view.begin, priors.voxel_m);
-    if (everywhere && ends_[k].opaque) AddKnownPlaneLoss(k, sums);
+    const RayView& view = s.views[k];
+    ends_[k] = EndOf(static_cast<size_t>(view.count), s.weight.data() + view.begin, stops_.data() + view.begin, priors.voxel_m);
+    if (everywhere && ends_[k].opaque) AddKnownPlaneLoss(s, k, sums);
   }
   if (!priors.Segments()) return;
-  for (size_t first = 0; first < views_.size();) {
+  for (size_t first = 0; first < s.views.size();) {
     size_t end = first + 1;
-    while (Ray(first).segment >= 0 && end < views_.size() && Ray(end).segment == Ray(first).segment) ++end;
-    if (end - first >= kFewestPlanePoints) AddSegmentLoss(first, end, sums);
+    while (s.Ray(first).segment >= 0 && end < s.views.size() && s.Ray(end).segment == s.Ray(first).segment) ++end;
+    if (end - first >= kFewestPlanePoints) AddSegmentLoss(s, first, end, sums);
     first = end;
   }
 }
 
 // The robust square of the distance between a ray's end and a plane, in widths of its pixel; one voxel is far. No loss where the ray grazes the
 // plane.
-void PacketTrainer::AddDistanceLoss(size_t view, double weight, const Vector3d& on_plane, const Vector3d& normal, LossSums& sums) {
-  const PixelRay& ray = Ray(view).ray;
-  const double along = normal.dot(ray.direction_enu), voxel_m = step_->priors.voxel_m;
+void PacketEnds::AddDistanceLoss(const PacketSamples& s, size_t view, double weight, const Vector3d& on_plane, const Vector3d& normal,
+                                 LossSums& sums) {
+  const PixelRay& ray = s.Ray(view).ray;
+  const double along = normal.dot(ray.direction_enu), voxel_m = s.step->priors.voxel_m;
   if (std::abs(along) < kLeastFacing) return;
   const double width_m = std::max(static_cast<double>(ray.pixel_pitch) * ends_[view].mean_m, kLeastWidthVoxels * voxel_m);
   const double off = (ray.origin_enu + ends_[view].mean_m * ray.direction_enu - on_plane).dot(normal);
   const Loss<double> loss = RobustLoss(weight, off / width_m, voxel_m / width_m);
   sums.loss += loss.value;
-  distance_gradient_[view] += static_cast<float>(loss.gradient * along / width_m) * step_->ray_share;
+  distance_gradient_[view] += static_cast<float>(loss.gradient * along / width_m) * s.step->ray_share;
 }
 
-void PacketTrainer::AddKnownPlaneLoss(size_t view, LossSums& sums) {
-  const StepPriors& priors = step_->priors;
-  const PixelRay& ray = Ray(view).ray;
+void PacketEnds::AddKnownPlaneLoss(const PacketSamples& s, size_t view, LossSums& sums) {
+  const StepPriors& priors = s.step->priors;
+  const PixelRay& ray = s.Ray(view).ray;
   const PointPlane* const plane =
       priors.known_planes->At(ray.origin_enu + ends_[view].mean_m * ray.direction_enu, kPlaneReachVoxels * priors.voxel_m);
   if (plane == nullptr) return;
   // Light that grazes a wall is stopped over a long way, but near the wall.
   const double facing = std::abs(plane->normal.dot(ray.direction_enu));
   if (facing * ends_[view].depth_m > kSharpVoxels * priors.voxel_m) return;
-  AddDistanceLoss(view, priors.planes, plane->point, plane->normal, sums);
+  AddDistanceLoss(s, view, priors.planes, plane->point, plane->normal, sums);
 }
 
-void PacketTrainer::AddSegmentLoss(size_t first, size_t end, LossSums& sums) {
-  const StepPriors& priors = step_->priors;
+void PacketEnds::AddSegmentLoss(const PacketSamples& s, size_t first, size_t end, LossSums& sums) {
+  const StepPriors& priors = s.step->priors;
   std::vector<size_t> used;
   std::vector<Vector3d> points;
   for (size_t k = first; k < end; ++k) {
     if (!ends_[k].sharp) continue;
     used.push_back(k);
-    points.emplace_back(Ray(k).ray.origin_enu + ends_[k].mean_m * Ray(k).ray.direction_enu);
+    points.emplace_back(s.Ray(k).ray.origin_enu + ends_[k].mean_m * s.Ray(k).ray.direction_enu);
   }
   const std::optional<Plane> plane = FitPlane(points);
   if (!plane) return;
@@ -122,32 +115,30 @@ void PacketTrainer::AddSegmentLoss(size_t first, size_t end, LossSums& sums) {
     upright = UprightPlane(*plane, yaw_deg);
   }
   for (const size_t k : used) {
-    if (priors.planar > 0.0) AddDistanceLoss(k, priors.planar, plane->point, plane->normal, sums);
-    if (upright) AddDistanceLoss(k, priors.upright, upright->point, upright->normal, sums);
+    if (priors.planar > 0.0) AddDistanceLoss(s, k, priors.planar, plane->point, plane->normal, sums);
+    if (upright) AddDistanceLoss(s, k, priors.upright, upright->point, upright->normal, sums);
   }
 }
 
-// The mean distance is sum w s / sum w over the stops s, which are taken as given.
-void PacketTrainer::AddDistanceGradient(size_t view) {
+void PacketEnds::AddGradient(const PacketSamples& s, size_t view, float* weight_gradient, LossSums& sums) const {
+  const RayView& samples = s.views[view];
+  const float* stops = stops_.data() + samples.begin;
+  const auto count = static_cast<size_t>(samples.count);
+  if (AtPoint(s, view)) {
+    const PixelRay& ray = s.Ray(view).ray;
+    // Samples are farther apart than many points are uncertain: the wider of both decides which samples are near the point.
+    const auto step_m = static_cast<float>(shared_.target.step_m);
+    const float sigma_m = std::hypot(ray.point_sigma_m, 0.5F * step_m);
+    const float weight = static_cast<float>(s.step->priors.points) * s.step->ray_share;
+    const float loss =
+        AddPointDepthLoss(weight, count, s.weight.data() + samples.begin, stops, step_m, ray.point_distance_m, sigma_m, weight_gradient);
+    sums.loss += static_cast<double>(loss) / static_cast<double>(s.step->ray_share);
+  }
+  if (distance_gradient_[view] == 0.0F) return;
+  // The mean distance is sum w s / sum w over the stops s, which are taken as given.
   const RayEnd& end = ends_[view];
-  const float* stops = stops_.data() + views_[view].begin;
   const auto per_weight = static_cast<float>(static_cast<double>(distance_gradient_[view]) / end.weight);
-  for (size_t k = 0; k < static_cast<size_t>(views_[view].count); ++k)
-    weight_gradient_[k] += per_weight * (stops[k] - static_cast<float>(end.mean_m));
-}
-
-bool PacketTrainer::WantsPointLoss(const BatchRay& ray, const RayView& view) const {
-  return step_->priors.points > 0.0 && ray.ray.point_sigma_m > 0.0F && view.count > 0;
-}
-
-// Samples are farther apart than many points are uncertain: the wider of both decides which samples are near the point.
-void PacketTrainer::AddPointLoss(const BatchRay& ray, const RayView& view, LossSums& sums) {
-  const auto step_m = static_cast<float>(shared_.target.step_m);
-  const float sigma_m = std::hypot(ray.ray.point_sigma_m, 0.5F * step_m);
-  const float weight = static_cast<float>(step_->priors.points) * step_->ray_share;
-  const float loss = AddPointDepthLoss(weight, static_cast<size_t>(view.count), weight_.data() + view.begin, stops_.data() + view.begin, step_m,
-                                       ray.ray.point_distance_m, sigma_m, weight_gradient_.data());
-  sums.loss += static_cast<double>(loss) / static_cast<double>(step_->ray_share);
+  for (size_t k = 0; k < count; ++k) weight_gradient[k] += per_weight * (stops[k] - static_cast<float>(end.mean_m));
 }
 
 }  // namespace skyquilt::worker

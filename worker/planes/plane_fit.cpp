@@ -16,7 +16,7 @@ constexpr double kFlatness = 4.0, kBreadth = 1e-3;
 constexpr double kNearlyLevel = 0.985, kNearlyVertical = 0.35;
 // Walls that are turned more against the buildings around them stay as they are.
 constexpr double kNearlyAligned_deg = 10.0;
-constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr double kDegree = std::numbers::pi / 180.0;  // in radians
 
 }  // namespace
 
@@ -39,8 +39,8 @@ std::optional<Plane> UprightPlane(const Plane& plane, std::optional<double> yaw_
   if (up > kNearlyLevel) return Plane{plane.point, Vector3d::UnitZ()};
   if (!(up < kNearlyVertical)) return std::nullopt;
   const double normal_yaw = std::atan2(plane.normal.y(), plane.normal.x());
-  const double turn = yaw_deg ? std::remainder(*yaw_deg * kRadians - normal_yaw, 0.5 * std::numbers::pi) : 0.0;
-  const double yaw = std::abs(turn) < kNearlyAligned_deg * kRadians ? normal_yaw + turn : normal_yaw;
+  const double turn = yaw_deg ? std::remainder(*yaw_deg * kDegree - normal_yaw, 0.5 * std::numbers::pi) : 0.0;
+  const double yaw = std::abs(turn) < kNearlyAligned_deg * kDegree ? normal_yaw + turn : normal_yaw;
   return Plane{plane.point, Vector3d(std::cos(yaw), std::sin(yaw), 0.0)};
 }
 

@@ -1,11 +1,11 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { splitAdvice } from "../../../src/panels/advice.js";
-import { groupCommands } from "../../../src/panels/command_groups.js";
-import { markEntries, residualPx, withMark } from "../../../src/panels/control_points.js";
-import { listPhotos, stepPhoto } from "../../../src/panels/photo_list.js";
-import { readNumber } from "../../../src/panels/read_number.js";
+import { listPhotos, stepPhoto } from "../../../src/panels/photos/photo_list.js";
+import { groupCommands } from "../../../src/panels/shell/command_groups.js";
+import { splitAdvice } from "../../../src/panels/widgets/advice.js";
+import { readNumber } from "../../../src/panels/widgets/read_number.js";
 import type { PhotoSight } from "../../../src/state/app_state.js";
+import { markEntries, residualPx, withMark } from "../../../src/state/control_points.js";
 import type { Photo } from "../../../src/state/project.js";
 
 const photos: readonly Photo[] = ["A1.jpg", "a2.jpg", "b3.jpg"].map((name, index) => ({

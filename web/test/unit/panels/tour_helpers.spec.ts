@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { swipeOf } from "../../../src/panels/swipe_gesture.js";
-import { mapBox, onMap, pictureTransform, tourBox, withinMap } from "../../../src/panels/tour_map_view.js";
-import { isStart, layersText, stopOptions } from "../../../src/panels/tour_names.js";
+import { swipeOf } from "../../../src/panels/play/swipe_gesture.js";
+import { mapBox, onMap, pictureTransform, tourBox, withinMap } from "../../../src/panels/play/tour_map_view.js";
+import { isStart, layersText, stopOptions } from "../../../src/panels/tour/tour_names.js";
 import { setStart } from "../../../src/tour/edit_stops.js";
 import { rowOfStops } from "../tools/tour_samples.js";
 

@@ -1,13 +1,13 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { anglesOfPose, forward, rotationFromAngles } from "../../../src/geo/camera.js";
-import { boxAround, withFace } from "../../../src/panels/clip_box.js";
-import { photoFovyDeg } from "../../../src/panels/photo_pose.js";
-import { psnrQuality, rampColour } from "../../../src/panels/ramp.js";
-import { stepOfKey } from "../../../src/panels/slider_keys.js";
-import { cursorText, engineText, shortVertical } from "../../../src/panels/status_text.js";
-import { northUp } from "../../../src/panels/turn_north.js";
+import { cursorText, engineText, shortVertical } from "../../../src/panels/shell/status_text.js";
+import { northUp } from "../../../src/panels/shell/turn_north.js";
+import { psnrQuality, rampColour } from "../../../src/panels/widgets/ramp.js";
+import { stepOfKey } from "../../../src/panels/widgets/slider_keys.js";
 import type { EngineStatus, SurfacePoint } from "../../../src/state/app_state.js";
+import { boxAround, withFace } from "../../../src/state/clip_box.js";
+import { photoFovyDeg } from "../../../src/state/photo_pose.js";
 
 test("faces of the clip box do not pass each other", () => {
   const box = { on: true, min: [0, 0, 0], max: [10, 10, 10] } as const;

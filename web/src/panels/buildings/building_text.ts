@@ -1,9 +1,8 @@
 // Buildings as rows of text: the card of one, the table of all, and what the clipboard gets.
-import { formatEstimate, formatMap, formatWithSuffix, type UnitKind } from "../../geo/format.js";
+import { formatEstimate, formatMap, formatWithSuffix, shortVertical, type UnitKind } from "../../geo/format.js";
 import { mapFromEnu } from "../../geo/projection.js";
 import { type Building, type BuildingSet, type MeasureName, measureOf, topOfBuilding } from "../../state/buildings.js";
 import type { Project } from "../../state/project.js";
-import { shortVertical } from "../shell/status_text.js";
 
 export const ROOF_LABELS = { flat: "flat", gable: "gable", hip: "hip", other: "other" } as const;
 

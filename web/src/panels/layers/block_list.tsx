@@ -2,7 +2,7 @@
 import type { ReactElement } from "react";
 import type { Block } from "../../state/project.js";
 import { useApp } from "../use_store.js";
-import { psnrQuality, rampColour } from "../widgets/ramp.js";
+import { Psnr } from "../widgets/psnr.js";
 
 export function BlockList({ blocks }: { readonly blocks: readonly Block[] }): ReactElement {
   const { scene } = useApp();
@@ -39,15 +39,5 @@ export function BlockList({ blocks }: { readonly blocks: readonly Block[] }): Re
         </tbody>
       </table>
     </details>
-  );
-}
-
-export function Psnr({ valueDb }: { readonly valueDb: number | null }): ReactElement {
-  if (valueDb === null) return <span className="hint">unknown</span>;
-  return (
-    <span className="psnr">
-      <span className="chip" style={{ backgroundColor: rampColour(psnrQuality(valueDb)) }} />
-      {valueDb.toFixed(1)} dB
-    </span>
   );
 }

@@ -2,9 +2,9 @@
 import { type ReactElement, useState } from "react";
 import { formatLength } from "../../geo/format.js";
 import { photoUrl } from "../../state/project.js";
-import { Psnr } from "../layers/block_list.js";
 import { useApp, useStore } from "../use_store.js";
 import { Icon } from "../widgets/icons.js";
+import { Psnr } from "../widgets/psnr.js";
 import { openCompare } from "./open_compare.js";
 import { listPhotos, PAGE, type PhotoEntry } from "./photo_list.js";
 

@@ -1,9 +1,8 @@
 // What the project is and how far its numbers can be trusted.
 import { Fragment, type ReactElement } from "react";
-import { formatArea, formatLength } from "../../geo/format.js";
+import { formatArea, formatLength, shortVertical } from "../../geo/format.js";
 import type { Accuracy, Project } from "../../state/project.js";
 import { useApp, useStore } from "../use_store.js";
-import { shortVertical } from "./status_text.js";
 
 declare const SKYQUILT_VERSION: string | undefined;
 

@@ -1,9 +1,10 @@
 // The line at the bottom: coordinates under the cursor, scale, saving, engine.
 import type { ReactElement } from "react";
+import { shortVertical } from "../../geo/format.js";
 import { useApp, useStore } from "../use_store.js";
 import { Icon } from "../widgets/icons.js";
 import { ScaleBar } from "./scale_bar.js";
-import { cursorText, engineText, shortVertical } from "./status_text.js";
+import { cursorText, engineText } from "./status_text.js";
 
 export function StatusBar(): ReactElement {
   return (

@@ -45,11 +45,6 @@ function spreadText(m: number): string {
   return m < 0.1 ? `${(m * 100).toFixed(1)} cm` : `${m.toFixed(2)} m`;
 }
 
-/** "heights above the WGS84 ellipsoid" becomes "WGS84 ellipsoid": the column says height already. */
-export function shortVertical(vertical: string): string {
-  return vertical.replace(/^\s*(ellipsoidal\s+)?heights?\s+(are\s+)?above\s+(the\s+)?/i, "").trim();
-}
-
 export interface EngineText {
   readonly kind: "lost" | "off" | "waiting" | "working" | "exact";
   readonly text: string;

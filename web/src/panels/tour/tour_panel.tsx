@@ -1,6 +1,6 @@
 // The tour: its title, stops and things; played from here. Without the right to change it only what there is to see.
 import type { ReactElement } from "react";
-import { changeTour } from "../../state/tour_state.js";
+import { changeTour } from "../../state/tour_changes.js";
 import { setTitle } from "../../tour/edit_stops.js";
 import { useApp, useStore } from "../use_store.js";
 import { Icon } from "../widgets/icons.js";

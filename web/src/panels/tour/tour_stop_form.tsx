@@ -1,26 +1,21 @@
 // One stop: what it says, how it looks, where it leads.
 import type { ReactElement } from "react";
+import { changeTour, setTourView } from "../../state/tour_changes.js";
 import { tourPose } from "../../state/tour_pose.js";
-import { changeTour, setTourView } from "../../state/tour_state.js";
 import { changeStop, moveStop, removeStop, type StopChange, setStart } from "../../tour/edit_stops.js";
 import { LONGEST_PAUSE_S } from "../../tour/limits.js";
 import { usableText } from "../../tour/text_rules.js";
-import type { Stop, Tour } from "../../tour/types.js";
 import { useApp } from "../use_store.js";
 import { CheckField } from "../widgets/check_field.js";
 import { Icon } from "../widgets/icons.js";
 import { LineField } from "../widgets/line_field.js";
 import { NumberField } from "../widgets/number_field.js";
+import type { StopFormProps } from "./stop_form_props.js";
 import { isStart } from "./tour_names.js";
 import { TourStopLook } from "./tour_stop_look.js";
 import { TourStopMedia } from "./tour_stop_media.js";
 import { goToStop } from "./tour_view.js";
 import { TourBranches, TourNext } from "./tour_ways.js";
-
-export interface StopFormProps {
-  readonly tour: Tour;
-  readonly stop: Stop;
-}
 
 export function TourStopForm({ tour, stop, place }: StopFormProps & { readonly place: number }): ReactElement {
   const context = useApp();

@@ -1,6 +1,6 @@
 // The stops in their order. A click flies there; the open one can be changed.
 import type { ReactElement } from "react";
-import { setTourView } from "../../state/tour_state.js";
+import { setTourView } from "../../state/tour_changes.js";
 import type { Stop, Tour } from "../../tour/types.js";
 import { useApp, useStore } from "../use_store.js";
 import { isStart } from "./tour_names.js";

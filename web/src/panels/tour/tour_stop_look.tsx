@@ -1,14 +1,14 @@
 // How the view looks at a stop: brightness, layers, measurements.
 import type { ReactElement } from "react";
-import { changeTour } from "../../state/tour_state.js";
+import { changeTour } from "../../state/tour_changes.js";
 import { changeStop, type StopChange } from "../../tour/edit_stops.js";
 import { EXPOSURE_STOPS, MOST_MEASUREMENTS } from "../../tour/limits.js";
 import { LAYER_NAMES } from "../../tour/types.js";
 import { useApp, useStore } from "../use_store.js";
 import { CheckField } from "../widgets/check_field.js";
 import { NumberField } from "../widgets/number_field.js";
+import type { StopFormProps } from "./stop_form_props.js";
 import { layersText } from "./tour_names.js";
-import type { StopFormProps } from "./tour_stop_form.js";
 
 export function TourStopLook({ stop }: StopFormProps): ReactElement {
   const { store } = useApp();

@@ -1,14 +1,14 @@
 // Picture and link of a stop.
 import type { ReactElement } from "react";
 import { CheckError } from "../../base/check.js";
-import { changeTour } from "../../state/tour_state.js";
+import { changeTour } from "../../state/tour_changes.js";
 import { changeStop, setPicture } from "../../tour/edit_stops.js";
 import { asUrl } from "../../tour/text_rules.js";
 import type { WebLink } from "../../tour/types.js";
 import { useApp } from "../use_store.js";
 import { Icon } from "../widgets/icons.js";
 import { LineField } from "../widgets/line_field.js";
-import type { StopFormProps } from "./tour_stop_form.js";
+import type { StopFormProps } from "./stop_form_props.js";
 import { UploadButton } from "./tour_upload.js";
 
 export function TourStopMedia({ tour, stop }: StopFormProps): ReactElement {

@@ -1,6 +1,6 @@
 // One label, marker or model.
 import { type ReactElement, useState } from "react";
-import { changeTour, setTourView } from "../../state/tour_state.js";
+import { changeTour, setTourView } from "../../state/tour_changes.js";
 import { removeThing, renameThing, scaleThing, setTarget, showAtStops, turnThing } from "../../tour/edit_things.js";
 import type { Thing, Tour } from "../../tour/types.js";
 import { useApp } from "../use_store.js";

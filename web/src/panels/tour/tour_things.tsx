@@ -1,6 +1,7 @@
 // What stands in the scene: labels, markers, models; added by a click on the surface.
 import type { ReactElement } from "react";
-import { type Placing, setTourView } from "../../state/tour_state.js";
+import { setTourView } from "../../state/tour_changes.js";
+import type { Placing } from "../../state/tour_state.js";
 import type { Thing, Tour } from "../../tour/types.js";
 import { useApp, useStore } from "../use_store.js";
 import { Icon } from "../widgets/icons.js";

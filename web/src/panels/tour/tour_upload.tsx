@@ -1,7 +1,7 @@
 // A button that uploads a picture or a model of the tour, and how far it is.
 import { type ChangeEvent, type ReactElement, useEffect, useRef } from "react";
 import { addErrorNotice } from "../../state/notices.js";
-import { setTourView } from "../../state/tour_state.js";
+import { setTourView } from "../../state/tour_changes.js";
 import type { NamedAsset } from "../../tour/edit_assets.js";
 import type { AssetKind } from "../context.js";
 import { useApp, useStore } from "../use_store.js";

@@ -2,7 +2,7 @@
 import type { ReactElement } from "react";
 import { add, scale } from "../../base/vec_math.js";
 import { forward } from "../../geo/camera.js";
-import { changeTour, setTourView } from "../../state/tour_state.js";
+import { changeTour, setTourView } from "../../state/tour_changes.js";
 import { addBranchTo, retargetBranch, setCentre, setWay } from "../../state/tour_ways.js";
 import { changeBranch, removeBranch, setNext } from "../../tour/edit_stops.js";
 import type { Path } from "../../tour/types.js";
@@ -10,8 +10,8 @@ import { useApp } from "../use_store.js";
 import { Icon } from "../widgets/icons.js";
 import { LineField } from "../widgets/line_field.js";
 import { SelectField } from "../widgets/select_field.js";
+import type { StopFormProps } from "./stop_form_props.js";
 import { stopOptions, WAY_NAMES } from "./tour_names.js";
-import type { StopFormProps } from "./tour_stop_form.js";
 
 const IN_ORDER = "in order";
 const THE_END = "the end";

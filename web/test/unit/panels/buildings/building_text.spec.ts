@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
+import type { Estimate } from "../../../../src/geo/measure.js";
 import {
   buildingLines,
   buildingText,
@@ -10,7 +11,6 @@ import {
   type SortKey,
   sortBuildings,
 } from "../../../../src/panels/buildings/building_text.js";
-import type { Estimate } from "../../../../src/state/app_state.js";
 import { type Building, type MeasureName, measureOf } from "../../../../src/state/buildings.js";
 import { buildingsCsv } from "../../../../src/state/buildings_csv.js";
 import { boxSolid, sampleBuilding, sampleSet } from "../../state/building_samples.js";

@@ -56,3 +56,16 @@ test("the error map is asked for once; without an answer the layer goes off agai
   assert.equal(store.get().layers.errorMap, false);
   assert.match(store.get().notices[0]?.text ?? "", /no held-out photos/);
 });
+
+test("commands are grouped by their ids and none is lost", () => {
+  const command = (id: string) => ({ id, label: id, keys: [], when: () => true, run: () => {} });
+  const groups = groupCommands(["tool.point", "view.all", "navigation.fly", "odd"].map(command));
+  assert.deepEqual(
+    groups.map(({ title, commands }) => [title, commands.map(({ id }) => id)]),
+    [
+      ["View", ["view.all", "navigation.fly"]],
+      ["Tools", ["tool.point"]],
+      ["More", ["odd"]],
+    ],
+  );
+});

@@ -1,10 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { swipeOf } from "../../../src/panels/play/swipe_gesture.js";
-import { mapBox, onMap, pictureTransform, tourBox, withinMap } from "../../../src/panels/play/tour_map_view.js";
-import { isStart, layersText, stopOptions } from "../../../src/panels/tour/tour_names.js";
-import { setStart } from "../../../src/tour/edit_stops.js";
-import { rowOfStops } from "../tools/tour_samples.js";
+import { swipeOf } from "../../../../src/panels/play/swipe_gesture.js";
+import { mapBox, onMap, pictureTransform, tourBox, withinMap } from "../../../../src/panels/play/tour_map_view.js";
 
 test("the map holds all places with a margin, north up, and is never too small", () => {
   const box = mapBox([
@@ -58,16 +55,4 @@ test("a quick finger to the side is a swipe, a slow, short or steep one is not",
   assert.equal(swipeOf([100, 100], [130, 100], 200), null);
   assert.equal(swipeOf([100, 100], [200, 180], 200), null);
   assert.equal(swipeOf([100, 100], [200, 100], 2000), null);
-});
-
-test("words of the tour: where it begins, stops to choose from, layers", () => {
-  const tour = rowOfStops();
-  const starts = (of: typeof tour) => of.stops.map((stop) => isStart(of, stop));
-  assert.deepEqual(starts(tour), [true, false, false]);
-  assert.deepEqual(starts(setStart(tour, "stop-3")), [false, false, true]);
-  assert.deepEqual(stopOptions(tour, "stop-2"), [
-    ["stop-1", "1. Stop 1"],
-    ["stop-3", "3. Stop 3"],
-  ]);
-  assert.equal(layersText({ surface: true, points: false }), "Shows surface; hides sparse points.");
 });

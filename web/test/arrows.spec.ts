@@ -95,12 +95,13 @@ function mayImport({ from, to, onlyTypes }: Import): boolean {
   return mayUse(roomOf(from), roomOf(to)) || (onlyTypes && MAY_NAME[roomOf(from)]?.includes(to) === true);
 }
 
-/** What is left of a graph when nodes that lead nowhere go, again and again: nothing, or circles and what leads to them. */
+/** What is left of a graph when nodes without arrows from or to them go, again and again: nothing, or circles and what is between them. */
 function circles(arrows: readonly (readonly [from: string, to: string])[]): readonly string[] {
   let left = arrows.filter(([from, to]) => from !== to);
   for (;;) {
     const starts = new Set(left.map(([from]) => from));
-    const fewer = left.filter(([, to]) => starts.has(to));
+    const ends = new Set(left.map(([, to]) => to));
+    const fewer = left.filter(([from, to]) => starts.has(to) && ends.has(from));
     if (fewer.length === left.length) return [...new Set(left.map(([from, to]) => `${from} -> ${to}`))];
     left = fewer;
   }

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
+#include <optional>
 #include <utility>
 
+#include "core/base/progress.h"
 #include "core/render/march.h"
 #include "core/render/ray_engine.h"
 
@@ -15,28 +16,40 @@ namespace skyquilt::worker {
 
 std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
                                               base::ThreadPool& threads) {
-  std::vector<int> photos(survey.photos.size());
-  std::iota(photos.begin(), photos.end(), 0);
-  const std::vector<Tile> tiles = TrainingTiles(survey, photos);
-  std::vector<render::Ray> rays(tiles.size());
-  constexpr size_t kOfPhoto = static_cast<size_t>(kTileRows) * kTileColumns;
-  threads.ParallelFor(static_cast<int64_t>(tiles.size() / kOfPhoto), [&](int64_t photo, int) {
-    for (size_t i = static_cast<size_t>(photo) * kOfPhoto; i < (static_cast<size_t>(photo) + 1) * kOfPhoto; ++i) {
-      source.RayThrough(tiles[i].photo, source.TileCentre(tiles[i]), &rays[i].origin_enu, &rays[i].direction_enu);
-    }
-  });
-  std::vector<render::RayColor> seen(rays.size());
   context.BuildNetworks();
   render::FieldSet set;
   set.context = &context;
   render::EngineOptions options;
   options.colour_threshold = 2.0F;  // depth only
-  render::RenderRays(set, rays, seen, options, threads);
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-  std::vector<SurfaceInterval> bands(survey.photos.size() * kTileRows * kTileColumns, {kUnknown, kUnknown, kUnknown});
-  for (size_t i = 0; i < tiles.size(); ++i) {
-    const Tile& tile = tiles[i];
-    bands[BandIndex(tile.photo, tile.row, tile.column)] = {seen[i].depth_front, seen[i].depth_median, seen[i].depth_back};
+  constexpr size_t kOfPhoto = static_cast<size_t>(kTileRows) * kTileColumns;
+  std::vector<SurfaceInterval> bands(survey.photos.size() * kOfPhoto, {kUnknown, kUnknown, kUnknown});
+  // Some photos at a time: the rays of thousands would need gigabytes.
+  constexpr size_t kPart = 64, kManyPhotos = 1000;
+  std::optional<base::Progress> progress;
+  if (survey.photos.size() >= kManyPhotos) {
+    progress.emplace("context: surface in the photos", static_cast<double>(survey.photos.size()), "photos");
+  }
+  std::vector<int> photos;
+  std::vector<render::Ray> rays;
+  std::vector<render::RayColor> seen;
+  for (size_t next = 0; next < survey.photos.size();) {
+    photos.clear();
+    for (; next < survey.photos.size() && photos.size() < kPart; ++next) photos.push_back(static_cast<int>(next));
+    const std::vector<Tile> tiles = TrainingTiles(survey, photos);
+    rays.resize(tiles.size());
+    threads.ParallelFor(static_cast<int64_t>(tiles.size() / kOfPhoto), [&](int64_t photo, int) {
+      for (size_t i = static_cast<size_t>(photo) * kOfPhoto; i < (static_cast<size_t>(photo) + 1) * kOfPhoto; ++i) {
+        source.RayThrough(tiles[i].photo, source.TileCentre(tiles[i]), &rays[i].origin_enu, &rays[i].direction_enu);
+      }
+    });
+    seen.assign(rays.size(), {});
+    render::RenderRays(set, rays, seen, options, threads);
+    for (size_t i = 0; i < tiles.size(); ++i) {
+      const Tile& tile = tiles[i];
+      bands[BandIndex(tile.photo, tile.row, tile.column)] = {seen[i].depth_front, seen[i].depth_median, seen[i].depth_back};
+    }
+    if (progress) progress->Update(static_cast<double>(next));
   }
   return bands;
 }

@@ -32,11 +32,13 @@ std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Su
     });
     if (progress) progress->Update(static_cast<double>(end));
   }
-  std::vector<Tile> kept;
+  if (std::ranges::find(enough, 1) == enough.end()) return all;
+  size_t kept = 0;
   for (size_t i = 0; i < all.size(); ++i) {
-    if (enough[i] != 0) kept.push_back(all[i]);
+    if (enough[i] != 0) all[kept++] = all[i];
   }
-  return kept.empty() ? all : kept;
+  all.resize(kept);
+  return all;
 }
 
 }  // namespace skyquilt::worker

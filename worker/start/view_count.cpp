@@ -10,15 +10,14 @@
 
 namespace skyquilt::worker {
 
-constexpr size_t kManyPhotos = 1000;  // from which this takes seconds
-
 std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
                                        const scene::HeightMap& surface, int min_views, base::ThreadPool& threads) {
   std::vector<Tile> all = TrainingTiles(survey, photos);
   if (surface.Empty() || min_views < 2) return all;
   const ViewCounter counter(survey, photos, [&source](int photo) -> const camera::Camera& { return source.CameraOf(photo); });
   std::vector<uint8_t> enough(all.size(), 0);
-  constexpr size_t kPart = 65'536;  // between parts, an interruption is noticed
+  constexpr size_t kManyPhotos = 1000;  // from which this takes seconds
+  constexpr size_t kPart = 65'536;      // between parts, an interruption is noticed
   std::optional<base::Progress> progress;
   if (photos.size() >= kManyPhotos) progress.emplace("set-up: views of the photos", static_cast<double>(all.size()), "tiles");
   for (size_t begin = 0; begin < all.size(); begin += kPart) {

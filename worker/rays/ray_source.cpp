@@ -22,7 +22,10 @@ RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixe
     const survey::Photo& photo = survey.photos[i];
     cameras_.push_back(survey.cameras[static_cast<size_t>(photo.camera)].Resized(pixels.Width(i), pixels.Height(i)));
     const auto [entry, is_new] = known.try_emplace({photo.camera, pixels.Width(i), pixels.Height(i)}, pitches_.size());
-    if (is_new) pitches_.emplace_back(cameras_.back());
+    if (is_new) {
+      pitches_.emplace_back(cameras_.back());
+      lenses_.emplace_back(cameras_.back());
+    }
     pitch_of_.push_back(entry->second);
     enu_from_cam_.push_back(photo.cam_from_enu.Inverse());
     per_radius2_.push_back(1.0 / (cameras_.back().MaxImageRadius() * cameras_.back().MaxImageRadius()));
@@ -42,9 +45,10 @@ void RaySource::SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, doub
 }
 
 void RaySource::RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vector3d* origin_enu, Eigen::Vector3d* direction_enu) const {
-  const geo::Rigid3d& pose = enu_from_cam_[static_cast<size_t>(photo)];
+  const auto i = static_cast<size_t>(photo);
+  const geo::Rigid3d& pose = enu_from_cam_[i];
   *origin_enu = pose.translation;
-  *direction_enu = (pose.rotation * cameras_[static_cast<size_t>(photo)].RayFromImg(pixel)).normalized();
+  *direction_enu = (pose.rotation * lenses_[pitch_of_[i]].RayFromImg(pixel)).normalized();
 }
 
 float RaySource::Radius2(int photo, const Eigen::Vector2d& pixel) const {
@@ -172,6 +176,13 @@ std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
     for (size_t i = 0; i < values.size(); ++i) values[i] = image::LinearFromSrgb(static_cast<float>(i) / 255.0F);
     return values;
   }();
+  // Where there is no vignetting, a photo has 256 values for each colour.
+  const float* vignetting = response_.vignetting.data() + 3 * static_cast<size_t>(response_.camera[index]);
+  const bool is_even = std::all_of(vignetting, vignetting + 3, [](float term) { return term == 0.0F; });
+  std::array<std::array<float, 256>, 3> of_value;
+  for (size_t c = 0; is_even && c < 3; ++c) {
+    for (size_t i = 0; i < 256; ++i) of_value[c][i] = image::SrgbFromLinear(linear[i] / exposures_[index][c].gain);
+  }
   std::vector<Eigen::Vector3f> colors;
   colors.reserve(static_cast<size_t>(kTileRows) * kTileColumns);
   for (int row = 0; row < kTileRows; ++row) {
@@ -186,7 +197,8 @@ std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
           const size_t pixel = along(row, kTileRows, v, height) * static_cast<size_t>(width) + along(column, kTileColumns, u, width);
           if (!pixels.mask.empty() && pixels.mask[pixel] == 0) continue;
           for (size_t c = 0; c < 3; ++c) {
-            sum[static_cast<Eigen::Index>(c)] += image::SrgbFromLinear(linear[pixels.rgb[3 * pixel + c]] / gain[c]);
+            const uint8_t value = pixels.rgb[3 * pixel + c];
+            sum[static_cast<Eigen::Index>(c)] += is_even ? of_value[c][value] : image::SrgbFromLinear(linear[value] / gain[c]);
           }
           n += 1.0F;
         }

@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "core/brightness/response.h"
 #include "core/camera/camera.h"
+#include "core/camera/lens.h"
 #include "core/camera/pixel_pitch.h"
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
@@ -90,7 +91,8 @@ class RaySource {
   const brightness::Response& response_;
   std::vector<camera::Camera> cameras_;                         // per photo, at cached size
   std::vector<camera::PixelPitch> pitches_;                     // of the different ones of them
-  std::vector<size_t> pitch_of_;                                // per photo
+  std::vector<camera::Lens> lenses_;                            // of the same
+  std::vector<size_t> pitch_of_;                                // per photo, index of the two above
   std::vector<geo::Rigid3d> enu_from_cam_;                      // per photo
   std::vector<std::array<brightness::Exposure, 3>> exposures_;  // per photo, on the axis
   std::vector<double> per_radius2_;                             // per photo: 1 / squared pixels from the principal point to the farthest corner

@@ -95,8 +95,10 @@ bool ViewCounter::MayShow(const Node& node, const Eigen::Vector3d& x_in_enu, dou
   constexpr double kReach = 6.0;
   if (!(nearest_m > kReach * radius_m) || !(nearest_m > 0.0)) return true;
   constexpr double kRounding = 1e-6;
-  const double reach = std::asin(kReach * radius_m / nearest_m) + std::asin(std::min(1.0, node.radius_m / distance_m)) + kRounding;
-  return AngleBetweenUnits(node.axis, offset / distance_m) <= node.half_angle + reach;
+  // No less than asin(sine), and much faster.
+  const auto angle = [](double sine) { return sine + (std::numbers::pi / 2.0 - 1.0) * sine * sine * sine; };
+  const double reach = node.half_angle + angle(kReach * radius_m / nearest_m) + angle(std::min(1.0, node.radius_m / distance_m)) + kRounding;
+  return reach >= std::numbers::pi || node.axis.dot(offset) >= std::cos(reach) * distance_m;
 }
 
 void ViewCounter::Add(int index, const Eigen::Vector3d& x_in_enu, double radius_m, int enough, int* views) const {

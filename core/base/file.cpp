@@ -116,6 +116,16 @@ void WriteFileAtomically(const fs::path& file, std::string_view content) {
   SyncPath(FolderOf(file));
 }
 
+void Rename(const fs::path& from, const fs::path& to) {
+  if (rename(from.c_str(), to.c_str()) != 0) ThrowFileError(to, "cannot be renamed from " + from.string(), errno);
+}
+
+void Publish(const fs::path& from, const fs::path& to) {
+  SyncPath(from);
+  Rename(from, to);
+  SyncPath(FolderOf(to));
+}
+
 void SyncPath(const fs::path& path) {
   const Descriptor descriptor(path, O_RDONLY);
   if (descriptor.value() < 0) ThrowFileError(path, "cannot open", errno);

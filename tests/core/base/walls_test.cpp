@@ -281,6 +281,19 @@ TEST(Rooms, CostlyTemplatesAreUsedInOneFile) {
   EXPECT_EQ(users, kMay) << "files that need no exception any more";
 }
 
+// So that one place decides what is synced, and what a message says, when a file gets its name.
+TEST(Rooms, FilesAreRenamedInOneFile) {
+  static const std::regex kRename("\\brename[(]");
+  std::set<std::string> users;
+  for (const auto& [file, lines] : Sources()) {
+    for (std::string line : lines) {
+      line.resize(std::min(line.size(), line.find("//")));
+      if (line.find("rename(") != std::string::npos && std::regex_search(line, kRename)) users.insert(file);
+    }
+  }
+  EXPECT_EQ(users, std::set<std::string>({"core/base/file.cpp"})) << "use Rename or Publish of core/base/file.h, or PartialPath";
+}
+
 TEST(Rooms, ForbiddenIncludesAreFound) {
   const std::vector<std::pair<std::string, std::string>> violators = {
       {"worker/trainer.cpp", "#include <mpi.h>"},

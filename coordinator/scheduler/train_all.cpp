@@ -15,6 +15,7 @@
 #include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/train_ledger.h"
 #include "coordinator/scheduler/train_progress.h"
+#include "core/base/amounts.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/json_text.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
@@ -197,7 +198,7 @@ std::vector<WrittenFile> TilesetWriter::Rows() const {
            .crs = frame_.georeferenced() ? "EPSG:4978" : frame_.CrsName(),
            .vertical = earth_.VerticalName(),
            .bytes = static_cast<int64_t>(bytes_),
-           .detail = CountText(static_cast<int64_t>(nodes_.size()), "tile") + " in " + CountText(levels, "level")}};
+           .detail = base::CountText(static_cast<int64_t>(nodes_.size()), "tile") + " in " + base::CountText(levels, "level")}};
 }
 
 }  // namespace skyquilt::surface

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/progress.h"
 #include "core/page/html.h"
 #include "core/page/page_frame.h"
 

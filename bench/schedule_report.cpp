@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/schedule_bench.h"
+#include "core/base/amounts.h"
 #include "core/base/json_text.h"
-#include "core/base/progress.h"
 #include "core/base/system.h"
 #include "core/page/bar_chart.h"
 #include "core/page/html.h"

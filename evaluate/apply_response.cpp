@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/camera/corner_radius.h"
 #include "evaluate/pixel_groups.h"
 
 namespace skyquilt::evaluate {
@@ -45,16 +46,13 @@ void ApplyResponse(const camera::Camera& camera, const PhotoResponse& recording,
   one.vignetting.assign(recording.vignetting.begin(), recording.vignetting.end());
   const bool even = recording.vignetting == std::array<float, 3>{0.0F, 0.0F, 0.0F};
   if (even && recording.log_gain == std::array<float, 3>{0.0F, 0.0F, 0.0F}) return;
-  const Eigen::Vector2d middle = camera.PrincipalPoint();
-  const double per_radius2 = 1.0 / (camera.MaxImageRadius() * camera.MaxImageRadius());
+  const camera::CornerRadius radius(camera);
   const std::array<brightness::Exposure, 3> whole = one.ExposureOf(0);
   threads.ParallelFor(camera.height, [&](int64_t row, int) {
     for (int x = 0; x < camera.width; ++x) {
-      const Eigen::Vector2d pixel(x + 0.5, static_cast<double>(row) + 0.5);
-      const auto radius2 = static_cast<float>((pixel - middle).squaredNorm() * per_radius2);
-      const std::array<brightness::Exposure, 3> exposure = even ? whole : one.ExposureOf(0, radius2);
+      const float radius2 = radius.Squared({x + 0.5, static_cast<double>(row) + 0.5});
       render::RayColor& color = colors[static_cast<size_t>(row) * static_cast<size_t>(camera.width) + static_cast<size_t>(x)];
-      for (size_t c = 0; c < 3; ++c) color.rgb_srgb[c] = brightness::Expose(color.rgb_srgb[c], exposure[c]).value;
+      brightness::Expose(even ? whole : one.ExposureOf(0, radius2), color.rgb_srgb);
     }
   });
 }

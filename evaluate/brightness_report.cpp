@@ -12,6 +12,7 @@
 #include "core/base/json_text.h"
 #include "core/brightness/captured_photos.h"
 #include "core/brightness/predict_gains.h"
+#include "core/camera/corner_radius.h"
 #include "core/image/srgb.h"
 #include "core/page/html.h"
 
@@ -34,8 +35,7 @@ size_t BinOf(float display_value) {
 
 void AddPhoto(const brightness::Response& response, const camera::Camera& cached_camera, const image::PixelCache& pixels, size_t photo,
               LightOfPhotos* light) {
-  const Eigen::Vector2d middle = cached_camera.PrincipalPoint();
-  const double per_radius2 = 1.0 / (cached_camera.MaxImageRadius() * cached_camera.MaxImageRadius());
+  const camera::CornerRadius radius(cached_camera);
   double before = 0.0, after = 0.0, values = 0.0;
   for (int row = 0; row < kGrid; ++row) {
     for (int column = 0; column < kGrid; ++column) {
@@ -43,8 +43,7 @@ void AddPhoto(const brightness::Response& response, const camera::Camera& cached
       uint8_t rgb[3];
       const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(cached_camera.width) + static_cast<size_t>(x);
       if (!pixels.Pixel(photo, pixel, rgb)) continue;
-      const auto radius2 = static_cast<float>((Eigen::Vector2d(x + 0.5, y + 0.5) - middle).squaredNorm() * per_radius2);
-      const std::array<float, 3> log_gain = response.LogGain(photo, radius2);
+      const std::array<float, 3> log_gain = response.LogGain(photo, radius.Squared({x + 0.5, y + 0.5}));
       float shown_before = 0.0F, shown_after = 0.0F;
       for (size_t c = 0; c < 3; ++c) {
         const float display = static_cast<float>(rgb[c]) / 255.0F;

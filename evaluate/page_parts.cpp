@@ -60,13 +60,7 @@ std::string TwoDigits(double value, const char* unit) {
 }
 
 std::string ShownDuration(double seconds) {
-  if (!std::isfinite(seconds)) return page::FormatFixed(seconds, 0);
-  constexpr const char* kSpace = "\xE2\x80\xAF";
-  if (seconds < 59.95) return page::FormatFixed(seconds, 1, "s");
-  const auto whole = static_cast<int64_t>(std::llround(seconds));
-  if (whole < 3600) return fmt::format("{0}{2}min {1:02}{2}s", whole / 60, whole % 60, kSpace);
-  const auto minutes = static_cast<int64_t>(std::llround(seconds / 60.0));
-  return fmt::format("{0}{2}h {1:02}{2}min", minutes / 60, minutes % 60, kSpace);
+  return page::FormatDuration(seconds);
 }
 
 std::string ShownDate(const std::string& utc_timestamp) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/base/amounts.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"

@@ -8,6 +8,7 @@
 #include "core/base/cancel.h"
 #include "core/base/child_process.h"
 #include "core/base/errors.h"
+#include "core/base/partial_path.h"
 
 namespace skyquilt::products {
 namespace {
@@ -48,11 +49,11 @@ std::string WaitForEnd(base::ChildProcess& ffmpeg) {
 
 struct VideoWriter::Impl {
   std::filesystem::path file;
-  std::filesystem::path partial;
+  base::PartialPath partial;
   int width = 0;
   int height = 0;
   bool closed = false;
-  std::optional<base::ChildProcess> ffmpeg;
+  std::optional<base::ChildProcess> ffmpeg = {};  // ends before the partial file is removed
 };
 
 bool CanWriteVideos() {
@@ -60,23 +61,13 @@ bool CanWriteVideos() {
 }
 
 VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int height, int fps, const std::string& ffmpeg)
-    : impl_(std::make_unique<Impl>()) {
+    : impl_(new Impl{.file = file, .partial{file, std::filesystem::path(file).replace_extension(".partial.mp4")}, .width = width, .height = height}) {
   SKYQUILT_CHECK(width > 0 && height > 0 && width % 2 == 0 && height % 2 == 0, std::to_string(width) + " x " + std::to_string(height));
   SKYQUILT_CHECK(fps > 0, std::to_string(fps));
-  impl_->file = file;
-  impl_->partial = file;
-  impl_->partial.replace_extension(".partial.mp4");
-  impl_->width = width;
-  impl_->height = height;
-  impl_->ffmpeg = StartFfmpeg(ffmpeg, impl_->partial, width, height, fps);
+  impl_->ffmpeg = StartFfmpeg(ffmpeg, impl_->partial.path(), width, height, fps);
 }
 
-VideoWriter::~VideoWriter() {
-  if (impl_->closed) return;
-  impl_->ffmpeg.reset();
-  std::error_code ignored;
-  std::filesystem::remove(impl_->partial, ignored);
-}
+VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::Write(const image::Image8& frame) {
   SKYQUILT_CHECK(frame.width == impl_->width && frame.height == impl_->height && frame.channels == 3,
@@ -95,9 +86,7 @@ void VideoWriter::Close() {
     base::ThrowIfCancelled();
     throw base::InputError(impl_->file, "cannot be written: " + reason, kFfmpegFix);
   }
-  std::error_code error;
-  std::filesystem::rename(impl_->partial, impl_->file, error);
-  if (error) throw base::InputError(impl_->file, "cannot be renamed from its temporary name: " + error.message(), "Check permissions of its folder");
+  impl_->partial.Publish();
   impl_->closed = true;
 }
 

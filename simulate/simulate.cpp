@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/amounts.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"

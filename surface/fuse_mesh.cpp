@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/amounts.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"

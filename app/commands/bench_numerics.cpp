@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <random>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "app/commands/bench_commands.h"
 #include "bench/numerics/numerics_bench.h"
 #include "core/base/file.h"
+#include "core/base/random.h"
 
 namespace skyquilt::app {
 namespace {
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 class WorkFolder {
  public:
   explicit WorkFolder(const std::string& out)
-      : path_((out.empty() ? fs::temp_directory_path() / ("skyquilt_numerics_" + std::to_string(std::random_device()())) : fs::path(out) / "work")) {
+      : path_((out.empty() ? fs::temp_directory_path() / ("skyquilt_numerics_" + base::RandomToken()) : fs::path(out) / "work")) {
     base::RequireWritableFolder(path_);
   }
   ~WorkFolder() {

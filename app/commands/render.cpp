@@ -3,10 +3,10 @@
 
 #include "app/commands/command.h"
 #include "coordinator/rendering/scene_session.h"
+#include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
-#include "core/base/progress.h"
 #include "core/scene/scene.h"
 #include "products/camera_path.h"
 #include "products/map_products.h"

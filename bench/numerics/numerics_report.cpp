@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/numerics/numerics_bench.h"
+#include "core/base/amounts.h"
 #include "core/base/json_text.h"
-#include "core/base/progress.h"
 #include "core/base/system.h"
 
 namespace skyquilt::bench {

@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/poses/poses_bench.h"
+#include "core/base/amounts.h"
 #include "core/base/json_text.h"
 #include "core/base/log.h"
-#include "core/base/progress.h"
 #include "core/base/system.h"
 
 namespace skyquilt::bench {

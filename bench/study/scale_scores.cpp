@@ -11,6 +11,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/progress.h"
+#include "core/camera/corner_radius.h"
 #include "core/image/area_mean.h"
 #include "core/image/srgb.h"
 #include "core/metrics/psnr.h"
@@ -130,12 +131,10 @@ TrueView SceneLight(const evaluate::HeldOutPhoto& photo, const evaluate::PhotoRe
   brightness::Response one = brightness::Response::Neutral(1, 1);
   one.log_gain.assign(recording.log_gain.begin(), recording.log_gain.end());
   one.vignetting.assign(recording.vignetting.begin(), recording.vignetting.end());
-  const Eigen::Vector2d middle = photo.camera.PrincipalPoint();
-  const double per_radius2 = 1.0 / (photo.camera.MaxImageRadius() * photo.camera.MaxImageRadius());
+  const camera::CornerRadius radius(photo.camera);
   for (int y = 0; y < view.light.height; ++y) {
     for (int x = 0; x < view.light.width; ++x) {
-      const double radius2 = (Eigen::Vector2d(x + 0.5, y + 0.5) - middle).squaredNorm() * per_radius2;
-      const std::array<float, 3> log_gain = one.LogGain(0, static_cast<float>(radius2));
+      const std::array<float, 3> log_gain = one.LogGain(0, radius.Squared({x + 0.5, y + 0.5}));
       for (size_t c = 0; c < 3; ++c) view.light.At(x, y)[c] *= std::exp(-log_gain[c]);
     }
   }

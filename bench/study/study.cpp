@@ -97,7 +97,7 @@ std::map<std::string, int64_t> SceneParameters(const std::filesystem::path& file
 void MoveFolder(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::filesystem::remove_all(to);
   std::filesystem::create_directories(to.parent_path());
-  std::filesystem::rename(from, to);
+  base::Rename(from, to);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "buildings/files/building_files.h"
 #include "buildings/files/file_frame.h"
+#include "core/base/amounts.h"
 #include "core/base/cancel.h"
 #include "core/base/file.h"
 #include "surface/files/file_writer.h"
@@ -55,7 +56,7 @@ std::vector<surface::WrittenFile> WriteBuildings(const BuildingSet& set, const s
                        .crs = crs,
                        .vertical = names.VerticalName(),
                        .bytes = static_cast<int64_t>(std::filesystem::file_size(file)),
-                       .detail = surface::CountText(static_cast<int64_t>(set.buildings.size()), "building")});
+                       .detail = base::CountText(static_cast<int64_t>(set.buildings.size()), "building")});
   }
   return written;
 }

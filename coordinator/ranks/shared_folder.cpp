@@ -6,26 +6,21 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <system_error>
 #include <thread>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/random.h"
 
 namespace skyquilt::coordinator {
 namespace {
 
 constexpr std::chrono::seconds kPatience{5};
 
-std::string RandomNumber() {
-  std::random_device device;
-  return base::HashHex(std::to_string(device()) + "." + std::to_string(device()));
-}
-
 }  // namespace
 
-SharedFolder::SharedFolder(const std::filesystem::path& folder) : number_(RandomNumber()) {
+SharedFolder::SharedFolder(const std::filesystem::path& folder) : number_(base::RandomToken()) {
   base::RequireWritableFolder(folder);
   // A new name every time: machines may remember for a while that there is no file of an old one.
   file_ = std::filesystem::absolute(folder) / (".shared_" + number_);
@@ -58,14 +53,13 @@ void RequireSharedFolder(const nlohmann::json& proof) {
                          "Put the project on a disk that all machines share, under the same path on each");
 }
 
-std::string FileStamp(const std::filesystem::path& file) {
+int64_t BytesSeen(const std::filesystem::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return "";
+  if (descriptor < 0) return -1;
   struct stat status = {};
   const bool known = fstat(descriptor, &status) == 0;
   close(descriptor);
-  if (!known) return "";
-  return std::to_string(status.st_size) + " bytes, " + std::to_string(status.st_mtim.tv_sec) + "." + std::to_string(status.st_mtim.tv_nsec);
+  return known ? status.st_size : -1;
 }
 
 }  // namespace skyquilt::coordinator

@@ -2,6 +2,7 @@
 // every other rank must read it there.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -27,7 +28,8 @@ class SharedFolder {
 // The other ranks' side. Waits some seconds for the file. Throws base::InputError naming the folder.
 void RequireSharedFolder(const nlohmann::json& proof);
 
-// Size and time of change of a file as a machine sees them now, opened so that network file systems ask their server; empty when there is none.
-std::string FileStamp(const std::filesystem::path& file);
+// Size of a file as this machine sees it now, opened so that network file systems ask their server; -1 when there is none. Not its time of change,
+// which parallel file systems bring up to date later.
+int64_t BytesSeen(const std::filesystem::path& file);
 
 }  // namespace skyquilt::coordinator

@@ -1,8 +1,8 @@
 #include "coordinator/rendering/scene_session.h"
 
 #include "coordinator/rendering/serve_rays.h"
+#include "core/base/amounts.h"
 #include "core/base/log.h"
-#include "core/base/progress.h"
 
 namespace skyquilt::coordinator {
 

@@ -256,7 +256,7 @@ void ServeBlocks(comm::Communicator& comm, const FieldTrainer& trainer, int thre
     FieldOutcome outcome = RunField(
         trainer, job, [&reporter](const worker::TrainStatus& status) { reporter(status); }, comm.rank(), threads);
     if (reporter.only_yielded() || reporter.done()) base::WithdrawRequest();
-    if (!outcome.failure && !checkpoints.empty()) outcome.saved = FileStamp(checkpoints / (job.name + ".h5"));
+    if (!outcome.failure && !checkpoints.empty()) outcome.saved_bytes = BytesSeen(checkpoints / (job.name + ".h5"));
     comm.Send(0, kTagOutcome, ToText(outcome));
     if (reporter.done()) return;
   }

@@ -98,7 +98,7 @@ std::string ToText(const FieldOutcome& outcome) {
                   {"wall_s", outcome.wall_s},
                   {"setup_s", outcome.setup_s},
                   {"peak_rss_bytes", outcome.peak_rss_bytes},
-                  {"saved", outcome.saved},
+                  {"saved_bytes", outcome.saved_bytes},
                   {"ok", r.ok},
                   {"steps", r.steps},
                   {"seconds", r.seconds},
@@ -136,7 +136,7 @@ FieldOutcome OutcomeFromText(const std::string& text) {
   outcome.wall_s = Number(j, "wall_s");
   outcome.setup_s = Number(j, "setup_s");
   outcome.peak_rss_bytes = j.at("peak_rss_bytes").get<int64_t>();
-  outcome.saved = j.value("saved", "");
+  outcome.saved_bytes = j.value("saved_bytes", int64_t{-1});
   outcome.result.ok = j.at("ok").get<bool>();
   outcome.result.reason = outcome.failure.reason;
   outcome.result.steps = j.at("steps").get<int64_t>();

@@ -30,7 +30,7 @@ struct FieldOutcome {
   double wall_s = 0.0;
   double setup_s = 0.0;  // of it, what was not training: set-up, and what is measured and saved after the last step
   int64_t peak_rss_bytes = 0;
-  std::string saved = {};  // FileStamp of the finished field's checkpoint on that machine; empty when it trained on rank 0
+  int64_t saved_bytes = -1;  // size of the finished field's checkpoint as that machine sees it; -1 when it trained on rank 0
 };
 
 // Trains one field and calls the reporter often. Tests replace it with a fake.

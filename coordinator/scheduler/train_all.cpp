@@ -15,6 +15,7 @@
 #include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/train_ledger.h"
 #include "coordinator/scheduler/train_progress.h"
+#include "core/base/amounts.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/json_text.h"
@@ -220,13 +221,13 @@ class Training {
 
   // A block that another machine finished must be on this machine's disk too.
   void RequireSaved(const FieldOutcome& outcome) const {
-    if (outcome.saved.empty()) return;
+    if (outcome.saved_bytes < 0) return;
     const std::filesystem::path file = project_.CheckpointFolder() / (outcome.job.name + ".h5");
-    const std::string here = FileStamp(file);
-    if (here == outcome.saved) return;
+    const int64_t here = BytesSeen(file);
+    if (here == outcome.saved_bytes) return;
     throw base::InputError(file,
-                           "was finished by " + comm_.NameOf(outcome.rank) + " and has " + outcome.saved + " there, but this machine sees " +
-                               (here.empty() ? "no such file" : here),
+                           "was finished by " + comm_.NameOf(outcome.rank) + " and has " + std::to_string(outcome.saved_bytes) +
+                               " bytes there, but this machine sees " + (here < 0 ? "no such file" : std::to_string(here) + " bytes"),
                            "Put the project on a disk that all machines share, under the same path on each, and run the same command again");
   }
 

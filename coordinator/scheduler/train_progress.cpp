@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdio>
 
+#include "core/base/amounts.h"
+
 namespace skyquilt::coordinator {
 
 TrainProgress::TrainProgress(const std::string& label, double total_cost, int n_fields)

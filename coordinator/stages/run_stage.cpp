@@ -1,10 +1,10 @@
 #include <chrono>
 
 #include "coordinator/stages/stage.h"
+#include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
-#include "core/base/progress.h"
 #include "core/base/system.h"
 #include "core/base/text.h"
 

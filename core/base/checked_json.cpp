@@ -1,15 +1,18 @@
 #include "core/base/checked_json.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
 
 namespace skyquilt::base {
 namespace {
 
 constexpr int kMaxDepth = 32;
+constexpr size_t kShownCharacters = 40;
 
-// How deep lists and objects are nested, without following them.
+}  // namespace
+
 int NestingOf(std::string_view text) {
   int depth = 0, deepest = 0;
   for (size_t i = 0; i < text.size();) {
@@ -21,24 +24,21 @@ int NestingOf(std::string_view text) {
   return deepest;
 }
 
-}  // namespace
-
-nlohmann::json ParseDocument(std::string_view text) {
+nlohmann::json ParseDocument(std::string_view text, RepeatedKeys repeated) {
+  using Event = nlohmann::json::parse_event_t;
   if (NestingOf(text) > kMaxDepth) throw Refused("its lists and objects are nested too deeply");
-  nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw Refused("it is not JSON");
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  std::string twice;
+  const auto check = [&](int /*depth*/, Event event, nlohmann::json& parsed) {
+    if (event == Event::object_start) keys.emplace_back();
+    if (event == Event::object_end) keys.pop_back();
+    if (event == Event::key && !keys.back().insert(parsed.get<std::string>()).second) twice = parsed.get<std::string>();
+    return true;
+  };
+  nlohmann::json json = repeated == RepeatedKeys::kRefused ? nlohmann::json::parse(text, check, false) : nlohmann::json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw Refused("", "is not valid JSON");
+  if (!twice.empty()) throw Refused("the key \"" + ShownStart(twice) + "\" occurs twice");
   return json;
-}
-
-void RequireNumber(const nlohmann::json& value, const std::string& where) {
-  if (!value.is_number() || !(std::abs(value.get<double>()) <= 1e9)) throw Refused(where + " must be a number from -1e9 to 1e9");
-}
-
-void RequireLine(const nlohmann::json& value, size_t max_bytes, const std::string& where) {
-  const bool good = value.is_string() && !value.get_ref<const std::string&>().empty() && value.get_ref<const std::string&>().size() <= max_bytes;
-  if (!good) throw Refused(where + " must be a text of 1 to " + std::to_string(max_bytes) + " bytes");
-  const auto& text = value.get_ref<const std::string&>();
-  if (std::any_of(text.begin(), text.end(), IsControl)) throw Refused(where + " must be one line");
 }
 
 size_t EndOfText(std::string_view document, size_t begin) {
@@ -54,6 +54,19 @@ size_t CharactersIn(std::string_view utf8) {
 
 bool IsControl(char c) {
   return static_cast<unsigned char>(c) < ' ' || c == '\x7F';
+}
+
+std::string ShownStart(std::string_view text) {
+  std::string shown(text.substr(0, kShownCharacters));
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~' || c == '"' || c == '\\'; }, '?');
+  return shown + (text.size() > kShownCharacters ? "..." : "");
+}
+
+double NumberIn(const nlohmann::json& json, const std::string& key, double otherwise) {
+  if (!json.is_object()) return otherwise;
+  const auto at = json.find(key);
+  return at != json.end() && at->is_number() ? at->get<double>() : otherwise;
 }
 
 }  // namespace skyquilt::base

@@ -8,10 +8,10 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <random>
 #include <system_error>
 
 #include "core/base/errors.h"
+#include "core/base/random.h"
 
 namespace skyquilt::base {
 namespace {
@@ -62,12 +62,9 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// A name that no other process or thread uses, in the same folder so that the rename stays on one file system. Process numbers would not do:
-// containers on one disk have the same ones.
+// A name that no other process or thread uses, in the same folder so that the rename stays on one file system.
 fs::path TemporaryBeside(const fs::path& file) {
-  std::random_device device;
-  const std::string number = HashHex(std::to_string(getpid()) + "." + std::to_string(device()) + "." + std::to_string(device()));
-  return FolderOf(file) / ("." + file.filename().string() + ".tmp." + number);
+  return FolderOf(file) / ("." + file.filename().string() + ".tmp." + RandomToken());
 }
 
 // 0 or the error number. *created: whether there is now a file of this process.
@@ -117,6 +114,16 @@ void WriteFileAtomically(const fs::path& file, std::string_view content) {
     ThrowFileError(file, "cannot write", code);
   }
   SyncPath(FolderOf(file));
+}
+
+void Rename(const fs::path& from, const fs::path& to) {
+  if (rename(from.c_str(), to.c_str()) != 0) ThrowFileError(to, "cannot be renamed from " + from.string(), errno);
+}
+
+void Publish(const fs::path& from, const fs::path& to) {
+  SyncPath(from);
+  Rename(from, to);
+  SyncPath(FolderOf(to));
 }
 
 void SyncPath(const fs::path& path) {

@@ -13,6 +13,11 @@ std::string ReadFile(const std::filesystem::path& file);
 // Writes a temporary file in the same folder, fsyncs it, renames it to `file` and fsyncs the folder: at any moment `file` has its old or its new
 // content. Throws InputError (disk full, no permission); the old file is then untouched.
 void WriteFileAtomically(const std::filesystem::path& file, std::string_view content);
+// Gives a file or a folder another name on the same disk in one step; replaces a file by a file, and an empty folder by a folder. Throws InputError
+// that names `to`; both are then untouched.
+void Rename(const std::filesystem::path& from, const std::filesystem::path& to);
+// The same for what is complete: waits until it is on disk before, and until its name is afterwards.
+void Publish(const std::filesystem::path& from, const std::filesystem::path& to);
 // Waits until a file or a folder is on disk (fsync). Throws InputError.
 void SyncPath(const std::filesystem::path& path);
 // Creates the folder (and its parents) and checks with a test file that it can be written. Throws InputError with advice.

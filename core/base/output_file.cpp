@@ -82,7 +82,7 @@ void OutputFile::Complete() {
 
 void OutputFile::Publish(const std::filesystem::path& target) {
   SKYQUILT_CHECK(descriptor_ < 0, partial_.string() + " is not complete");
-  if (rename(partial_.c_str(), target.c_str()) != 0) ThrowFileError(target, "cannot be renamed from " + partial_.string(), errno);
+  Rename(partial_, target);
   published_ = true;
 }
 

@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <mutex>
 
+#include "core/base/amounts.h"
+
 namespace skyquilt::base {
 namespace {
 
@@ -140,30 +142,6 @@ void ClearProgressLine() {
   if (!line_drawn) return;
   std::fputs("\r\x1b[K", stderr);
   line_drawn = false;
-}
-
-std::string FormatDuration(double seconds) {
-  if (!std::isfinite(seconds) || seconds < 0.0) return "?";
-  if (seconds < 59.95) return Format("%.1fs", seconds);
-  const double rounded = std::round(seconds);
-  if (rounded < 3600.0) return Format("%.0fm%02.0fs", std::floor(rounded / 60.0), std::fmod(rounded, 60.0));
-  const double minutes = std::round(seconds / 60.0);
-  return Format("%.0fh%02.0fm", std::floor(minutes / 60.0), std::fmod(minutes, 60.0));
-}
-
-std::string FormatCount(double count) {
-  if (!std::isfinite(count)) return "?";
-  static constexpr std::array<const char*, 5> kUnits = {"", " k", " M", " G", " T"};
-  double value = count;
-  size_t unit = 0;
-  // 999.5 would be rounded to 1000 in the smaller unit.
-  while (std::abs(value) >= 999.5 && unit + 1 < kUnits.size()) {
-    value /= 1000.0;
-    ++unit;
-  }
-  if (unit == 0 && value == std::round(value)) return Format("%.0f", value);
-  const int decimals = std::abs(value) < 9.995 ? 2 : std::abs(value) < 99.95 ? 1 : 0;
-  return Format("%.*f", decimals, value) + kUnits[unit];
 }
 
 }  // namespace skyquilt::base

@@ -31,9 +31,5 @@ class Progress {
 
 // Erases the progress line on a terminal, so that other output to standard error starts on an empty line; the next update draws it again.
 void ClearProgressLine();
-// "1h02m", "3m20s", "12.3s"
-std::string FormatDuration(double seconds);
-// "1.50 M", "12.3 k"
-std::string FormatCount(double count);
 
 }  // namespace skyquilt::base

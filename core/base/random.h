@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace skyquilt::base {
 
@@ -46,5 +47,9 @@ class Random {
   uint64_t state_ = 0;
   uint64_t increment_;
 };
+
+// 16 hex digits from the system's source of random numbers, for names that must differ between processes. Process numbers would not do: containers
+// on one disk have the same ones.
+std::string RandomToken();
 
 }  // namespace skyquilt::base

@@ -68,4 +68,8 @@ Exposed Expose(float srgb_reference, const Exposure& exposure) {
   return {image::SrgbFromLinear(linear), encode_slope * exposure.gain * image::LinearSlope(safe), encode_slope * linear};
 }
 
+void Expose(const std::array<Exposure, 3>& exposure, float (&rgb_srgb)[3]) {
+  for (size_t c = 0; c < 3; ++c) rgb_srgb[c] = Expose(rgb_srgb[c], exposure[c]).value;
+}
+
 }  // namespace skyquilt::brightness

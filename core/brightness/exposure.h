@@ -4,6 +4,7 @@
 // Gain: E over the median E of the survey's training photos, so that recorded linear light = gain * scene light.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -44,5 +45,7 @@ struct Exposed {
 };
 // srgb_reference: display value at reference exposure; negative values count as black. Finite for any finite input.
 Exposed Expose(float srgb_reference, const Exposure& exposure);
+// The values of red, green and blue, in place.
+void Expose(const std::array<Exposure, 3>& exposure, float (&rgb_srgb)[3]);
 
 }  // namespace skyquilt::brightness

@@ -123,10 +123,6 @@ struct RemoveOnExit {
   }
 };
 
-void Rename(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (std::rename(from.c_str(), to.c_str()) != 0) throw InputError(to, "cannot be replaced (" + std::string(std::strerror(errno)) + ")", kFixDisk);
-}
-
 // Unique per process: another one may write the same file at the same time, for instance a rank on a host that lost its connection after its job was
 // started again.
 std::filesystem::path TemporaryOf(const std::filesystem::path& file) {
@@ -157,13 +153,13 @@ void ReplaceKeepingPrevious(const std::filesystem::path& temporary, const std::f
   std::error_code ignored;
   std::filesystem::remove(new_previous, ignored);
   if (!std::filesystem::exists(file)) {
-    Rename(temporary, file);
+    base::Rename(temporary, file);
   } else if (link(file.c_str(), new_previous.c_str()) == 0) {
-    Rename(temporary, file);
-    Rename(new_previous, previous);
+    base::Rename(temporary, file);
+    base::Rename(new_previous, previous);
   } else {  // no hard links on this file system
-    Rename(file, previous);
-    Rename(temporary, file);
+    base::Rename(file, previous);
+    base::Rename(temporary, file);
   }
   base::SyncPath(file.has_parent_path() ? file.parent_path() : ".");
 }

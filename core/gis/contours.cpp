@@ -142,9 +142,9 @@ int64_t WriteContours(const MapGrid& grid, std::span<const float> height_m, doub
     const internal::Dataset raster = RasterInMemory(grid, height_m, gpkg);
     lines = LinesOf(raster.get(), interval, gpkg);
   }
-  const internal::PartialPackage partial(gpkg);
+  internal::PartialPackage partial(gpkg);
   WritePackage(grid, lines, interval, vertical, metadata, partial.path(), gpkg);
-  internal::RenameComplete(partial.path(), gpkg);
+  partial.Publish();
   return static_cast<int64_t>(lines.size());
 }
 

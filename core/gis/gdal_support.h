@@ -14,7 +14,6 @@
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
-#include "core/base/file.h"
 #include "core/geo/height_reference.h"
 #include "core/geo/utm.h"
 
@@ -48,16 +47,6 @@ inline void CloseWritten(Dataset* dataset, const std::filesystem::path& file) {
   CPLErrorReset();
   dataset->reset();
   if (CPLGetLastErrorType() >= CE_Failure) FailWriting(file, "cannot be completed");
-}
-
-// Waits until the file is on disk and gives it its final name.
-inline void RenameComplete(const std::filesystem::path& partial, const std::filesystem::path& file) {
-  base::SyncPath(partial);
-  std::error_code error;
-  std::filesystem::rename(partial, file, error);
-  if (error) {
-    throw base::InputError(file, "cannot be renamed from " + partial.string() + ": " + error.message(), "Check the permissions of its folder");
-  }
 }
 
 // A progress callback that ends GDAL's work when the program is asked to stop.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/base/partial_path.h"
 #include "core/gis/gdal_support.h"
 
 namespace skyquilt::gis::internal {
@@ -27,23 +28,26 @@ class FixedTimeStamp {
   std::optional<std::string> before_;
 };
 
-// The file under its temporary name, and what SQLite may leave beside it; removed unless the file was renamed.
+// The file under its temporary name, and what SQLite may leave beside it; removed unless the file was published.
 class PartialPackage {
  public:
-  explicit PartialPackage(const std::filesystem::path& file) : path_(file.parent_path() / (file.stem().string() + ".partial.gpkg")) { Remove(); }
-  ~PartialPackage() { Remove(); }
+  explicit PartialPackage(const std::filesystem::path& file) : file_(file, file.parent_path() / (file.stem().string() + ".partial.gpkg")) {
+    RemoveOthers();
+  }
+  ~PartialPackage() { RemoveOthers(); }
   PartialPackage(const PartialPackage&) = delete;
   PartialPackage& operator=(const PartialPackage&) = delete;
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return file_.path(); }
+  void Publish() { file_.Publish(); }
 
  private:
-  void Remove() const {
-    for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
+  void RemoveOthers() const {
+    for (const char* suffix : {"-journal", "-wal", "-shm"}) {
       std::error_code ignored;
-      std::filesystem::remove(path_.string() + suffix, ignored);
+      std::filesystem::remove(path().string() + suffix, ignored);
     }
   }
-  std::filesystem::path path_;
+  base::PartialPath file_;
 };
 
 // An empty package at `partial`; `file` is named in messages.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "core/base/partial_path.h"
 #include "core/gis/gdal_support.h"
 
 namespace skyquilt::gis {
@@ -50,37 +52,29 @@ CPLStringList CogOptions() {
 
 struct GeoTiffWriter::Impl {
   std::filesystem::path file;
-  std::filesystem::path partial;      // the rows as they come
-  std::filesystem::path cog_partial;  // rearranged, with overviews
+  std::optional<base::PartialPath> plain;  // the rows as they come; never published
+  base::PartialPath cog;                   // rearranged, with overviews
   GeoTiffSpec spec;
   Dataset dataset;
-  bool finished = false;
+
+  Impl(const std::filesystem::path& final_file, const GeoTiffSpec& given)
+      : file(final_file), plain(file), cog(file, file.string() + ".cog.partial"), spec(given) {}
 
   ~Impl() {
-    if (finished) return;
     const QuietErrors quiet;
     dataset.reset();
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
-    std::filesystem::remove(cog_partial, ignored);
   }
   void Write(int first_row, int n_rows, const void* values, size_t count, PixelType type);
   void Rearrange();
 };
 
-GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& file, const GeoTiffSpec& spec) : impl_(std::make_unique<Impl>()) {
+GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& file, const GeoTiffSpec& spec) : impl_(std::make_unique<Impl>(file, spec)) {
   const QuietErrors quiet;
-  impl_->file = file;
-  impl_->partial = file;
-  impl_->partial += ".partial";
-  impl_->cog_partial = file;
-  impl_->cog_partial += ".cog.partial";
-  impl_->spec = spec;
   GDALRegister_GTiff();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   SKYQUILT_CHECK(driver != nullptr, "GDAL without GeoTIFF");
   impl_->dataset.reset(
-      driver->Create(impl_->partial.c_str(), spec.grid.width, spec.grid.height, spec.bands, TypeOf(spec.type), CreationOptions(spec).List()));
+      driver->Create(impl_->plain->path().c_str(), spec.grid.width, spec.grid.height, spec.bands, TypeOf(spec.type), CreationOptions(spec).List()));
   if (!impl_->dataset) FailWriting(file, "cannot be created");
   GDALDataset& dataset = *impl_->dataset;
   double transform[6] = {spec.grid.left, spec.grid.resolution_m, 0.0, spec.grid.top, 0.0, -spec.grid.resolution_m};
@@ -129,10 +123,10 @@ void GeoTiffWriter::Impl::Rearrange() {
   GDALRegister_COG();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
   SKYQUILT_CHECK(driver != nullptr, "GDAL without cloud-optimised GeoTIFF");
-  const Dataset source(GDALDataset::Open(partial.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  const Dataset source(GDALDataset::Open(plain->path().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
   if (!source) FailWriting(file, "cannot be read back");
   CPLErrorReset();
-  Dataset copy(driver->CreateCopy(cog_partial.c_str(), source.get(), FALSE, CogOptions().List(), internal::ContinueUnlessCancelled, nullptr));
+  Dataset copy(driver->CreateCopy(cog.path().c_str(), source.get(), FALSE, CogOptions().List(), internal::ContinueUnlessCancelled, nullptr));
   base::ThrowIfCancelled();
   if (!copy || CPLGetLastErrorType() >= CE_Failure) FailWriting(file, "cannot be completed");
   internal::CloseWritten(&copy, file);
@@ -143,10 +137,8 @@ void GeoTiffWriter::Close() {
   const QuietErrors quiet;
   internal::CloseWritten(&impl_->dataset, impl_->file);
   impl_->Rearrange();
-  internal::RenameComplete(impl_->cog_partial, impl_->file);
-  impl_->finished = true;
-  std::error_code ignored;
-  std::filesystem::remove(impl_->partial, ignored);
+  impl_->cog.Publish();
+  impl_->plain.reset();
 }
 
 namespace {

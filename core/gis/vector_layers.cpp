@@ -91,7 +91,7 @@ void WriteLayer(const VectorLayer& source, const OGRSpatialReference& reference,
 void WriteVectorLayers(std::span<const VectorLayer> layers, bool georeferenced, const geo::UtmZone& zone, const std::filesystem::path& gpkg) {
   const internal::QuietErrors quiet;
   const internal::FixedTimeStamp time_stamp;
-  const internal::PartialPackage partial(gpkg);
+  internal::PartialPackage partial(gpkg);
   internal::Dataset dataset = internal::CreatePackage(partial.path(), gpkg);
   if (dataset->StartTransaction() != OGRERR_NONE) internal::FailWriting(gpkg, "cannot be written");
   for (const VectorLayer& layer : layers) {
@@ -99,7 +99,7 @@ void WriteVectorLayers(std::span<const VectorLayer> layers, bool georeferenced, 
   }
   if (dataset->CommitTransaction() != OGRERR_NONE) internal::FailWriting(gpkg, "cannot be written");
   internal::CloseWritten(&dataset, gpkg);
-  internal::RenameComplete(partial.path(), gpkg);
+  partial.Publish();
 }
 
 }  // namespace skyquilt::gis

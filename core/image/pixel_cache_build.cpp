@@ -64,9 +64,8 @@ class PartialFile {
   }
   void Finish() {
     if (fsync(descriptor_) != 0) Fail("cannot be written");
-    if (rename(partial_.c_str(), final_.c_str()) != 0) Fail("cannot be renamed to " + final_.filename().string());
+    base::Publish(partial_, final_);
     finished_ = true;
-    base::SyncPath(final_.has_parent_path() ? final_.parent_path() : ".");
   }
   size_t size() const { return size_; }
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/amounts.h"
+
 namespace skyquilt::page {
 
 namespace {
@@ -102,27 +104,21 @@ std::string FormatBytes(int64_t bytes) {
   return FormatFixed(value, unit == 0 ? 0 : value < 10.0 ? 2 : 1, kUnits[unit]);
 }
 
+std::string FormatDuration(double seconds) {
+  if (!std::isfinite(seconds) || seconds < 59.95) return FormatFixed(seconds, 1, "s");
+  const std::string second = WithUnit("", "s"), minute = WithUnit("", "min"), hour = WithUnit("", "h");
+  return base::FormatDuration(seconds, {second, minute, hour, " "});
+}
+
 std::string FormatInteger(int64_t value) {
-  const std::string digits = std::to_string(value);
-  const size_t first = digits.front() == '-' ? 1 : 0;
-  std::string grouped;
-  for (size_t i = 0; i < digits.size(); ++i) {
-    if (i > first && (digits.size() - i) % 3 == 0) grouped += kThinSpace;
-    grouped += digits[i];
-  }
-  return grouped;
+  return base::GroupDigits(value, kThinSpace);
 }
 
 std::string FormatLarge(double value, std::string_view unit) {
   if (!std::isfinite(value)) return FormatFixed(value, 0);
-  constexpr std::array<std::string_view, 5> kPrefixes = {"", "k", "M", "G", "T"};
-  size_t prefix = 0;
-  while (std::abs(value) >= 999.5 && prefix + 1 < kPrefixes.size()) {
-    value /= 1000.0;
-    ++prefix;
-  }
-  const int decimals = prefix == 0 ? 0 : std::abs(value) < 10.0 ? 2 : std::abs(value) < 100.0 ? 1 : 0;
-  return FormatFixed(value, decimals, std::string(kPrefixes[prefix]) + std::string(unit));
+  const base::ScaledCount scaled = base::ScaleCount(value);
+  const int decimals = scaled.prefix.empty() ? 0 : std::abs(scaled.value) < 10.0 ? 2 : std::abs(scaled.value) < 100.0 ? 1 : 0;
+  return FormatFixed(scaled.value, decimals, std::string(scaled.prefix) + std::string(unit));
 }
 
 std::string NumberCell(double value, const std::string& shown) {

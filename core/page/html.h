@@ -16,6 +16,8 @@ std::string FormatFixed(double value, int decimals, std::string_view unit = "");
 std::string FormatPercent(double share, int decimals = 1);
 // "1.53 GiB"; an en dash for 0.
 std::string FormatBytes(int64_t bytes);
+// "24.5 s", "10 min 24 s", "2 h 05 min", with thin no-break spaces before the units; an en dash for NaN.
+std::string FormatDuration(double seconds);
 // "12 345 678" with thin no-break spaces.
 std::string FormatInteger(int64_t value);
 // Large counts as "1.53 M"; an en dash for NaN.

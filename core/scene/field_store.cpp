@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/amounts.h"
 #include "core/base/errors.h"
-#include "core/base/progress.h"
 #include "core/scene/field_file.h"
 #include "core/scene/scene_file.h"
 

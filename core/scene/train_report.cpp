@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "core/base/checked_json.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
@@ -18,15 +19,10 @@ using Json = nlohmann::json;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kTrainAgain = "Run 'skyquilt train' again";
 
-double Number(const Json& json, const char* key, double fallback) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_number() ? found->get<double>() : fallback;
-}
-
 int64_t Integer(const Json& json, const char* key, int64_t fallback = 0) {
   const auto found = json.find(key);
   if (found != json.end() && found->is_number_integer()) return found->get<int64_t>();
-  return std::llround(Number(json, key, static_cast<double>(fallback)));
+  return std::llround(base::NumberIn(json, key, static_cast<double>(fallback)));
 }
 
 std::string Text(const Json& json, const char* key) {
@@ -45,8 +41,7 @@ std::vector<FieldFall> FallsFrom(const Json& json) {
   if (list == json.end() || !list->is_array()) return falls;
   for (const Json& fall : *list) {
     if (!fall.is_object()) continue;
-    falls.push_back(
-        {Integer(fall, "step"), Number(fall, "best_psnr_db", kUnknown), Number(fall, "psnr_db", kUnknown), Integer(fall, "restored_step")});
+    falls.push_back({Integer(fall, "step"), base::NumberIn(fall, "best_psnr_db"), base::NumberIn(fall, "psnr_db"), Integer(fall, "restored_step")});
   }
   return falls;
 }
@@ -66,17 +61,17 @@ FieldTraining FieldFrom(const Json& json) {
   field.ok = Flag(json, "ok");
   field.reason = Text(json, "reason");
   field.steps = Integer(json, "steps");
-  field.seconds = Number(json, "seconds", 0.0);
-  field.wall_seconds = Number(json, "wall_seconds", 0.0);
+  field.seconds = base::NumberIn(json, "seconds", 0.0);
+  field.wall_seconds = base::NumberIn(json, "wall_seconds", 0.0);
   field.samples = Integer(json, "samples");
   field.rays = Integer(json, "rays");
   field.parameters = Integer(json, "parameters");
-  field.psnr_db = Number(json, "psnr_db", kUnknown);
+  field.psnr_db = base::NumberIn(json, "psnr_db");
   field.dropped_steps = Integer(json, "dropped_steps");
   field.falls = FallsFrom(json);
   field.ended_early = Flag(json, "ended_early");
-  field.block_psnr_db = Number(json, "block_psnr_db", kUnknown);
-  field.context_psnr_db = Number(json, "context_psnr_db", kUnknown);
+  field.block_psnr_db = base::NumberIn(json, "block_psnr_db");
+  field.context_psnr_db = base::NumberIn(json, "context_psnr_db");
   field.shows_context = Flag(json, "shows_context");
   field.attempts = static_cast<int>(Integer(json, "attempts", 1));
   field.rank = static_cast<int>(Integer(json, "rank"));
@@ -190,7 +185,7 @@ TrainReport ReadTrainReport(const std::filesystem::path& file) {
   TrainReport report;
   report.ranks = static_cast<int>(Integer(json, "ranks"));
   report.threads = static_cast<int>(Integer(json, "threads"));
-  report.wall_seconds = Number(json, "wall_seconds", 0.0);
+  report.wall_seconds = base::NumberIn(json, "wall_seconds", 0.0);
   report.config_hash = Text(json, "config_hash");
   for (const Json& field : *fields) {
     if (field.is_object()) report.fields.push_back(FieldFrom(field));

@@ -107,10 +107,8 @@ void MergeFeatures(std::span<const DatabasePart> parts, const fs::path& file) {
       connection.Execute("COMMIT", kMerge);
     }
   }
-  base::SyncPath(unfinished);
   RemoveDatabase(file);
-  fs::rename(unfinished, file);
-  base::SyncPath(file.parent_path());
+  base::Publish(unfinished, file);
 }
 
 }  // namespace skyquilt::survey

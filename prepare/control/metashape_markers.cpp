@@ -6,7 +6,7 @@
 #include <pugixml.hpp>
 #include <string_view>
 
-#include "prepare/models/json_document.h"
+#include "core/base/json_document.h"
 #include "prepare/tables/text_table.h"
 
 namespace skyquilt::prepare {
@@ -46,7 +46,7 @@ class MarkerFile {
 
  private:
   int LineAt(std::ptrdiff_t offset) const {
-    return static_cast<int>(LineOf(text_, std::min(static_cast<size_t>(std::max<std::ptrdiff_t>(offset, 0)), text_.size())));
+    return static_cast<int>(base::LineOf(text_, std::min(static_cast<size_t>(std::max<std::ptrdiff_t>(offset, 0)), text_.size())));
   }
   [[noreturn]] void Fail(const pugi::xml_node& node, const std::string& found, const std::string& fix = kMarkersFix) const {
     FailTableLine(file_, LineAt(node.offset_debug()), std::string("<") + node.name() + "> " + found, fix);

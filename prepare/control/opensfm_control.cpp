@@ -2,10 +2,13 @@
 
 #include <map>
 
-#include "prepare/models/json_document.h"
+#include "core/base/json_document.h"
 
 namespace skyquilt::prepare {
 namespace {
+
+using base::JsonDocument;
+using base::JsonValue;
 
 constexpr const char* kObservationsFix = "Write the file with OpenSfM's annotation tool again, or give the points as gcp_list.txt";
 
@@ -23,7 +26,7 @@ RawControl ReadOpensfmControl(const std::filesystem::path& file) {
     const JsonValue entry = points.At(i);
     RawPoint point;
     point.label = entry.At("id").Text();
-    point.line = entry.Line();
+    point.line = entry.LineNumber();
     const auto [first, is_new] = line_of.emplace(point.label, point.line);
     if (!is_new) {
       entry.Fail("has the id " + point.label + ", as the point on line " + std::to_string(first->second), "Give every point an id of its own");
@@ -39,7 +42,7 @@ RawControl ReadOpensfmControl(const std::filesystem::path& file) {
       const JsonValue observation = observations.At(j);
       RawMark mark;
       mark.label = point.label;
-      mark.line = observation.Line();
+      mark.line = observation.LineNumber();
       mark.photo = observation.At("shot_id").Text();
       const std::vector<double> projection = observation.At("projection").Numbers(2);
       mark.pixel = {projection[0], projection[1]};

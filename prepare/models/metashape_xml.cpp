@@ -10,9 +10,9 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_document.h"
 #include "core/base/log.h"
 #include "core/geo/ecef.h"
-#include "prepare/models/json_document.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -55,7 +55,7 @@ class MetashapeFile {
 
  private:
   [[noreturn]] void FailAt(size_t offset, const std::string& found, const std::string& fix) const {
-    throw base::InputError(file_, "line " + std::to_string(LineOf(text_, std::min(offset, text_.size()))) + ": " + found, fix);
+    throw base::InputError(file_, "line " + std::to_string(base::LineOf(text_, std::min(offset, text_.size()))) + ": " + found, fix);
   }
   [[noreturn]] void Fail(const pugi::xml_node& node, const std::string& found, const std::string& fix = kXmlFix) const {
     FailAt(static_cast<size_t>(std::max<std::ptrdiff_t>(node.offset_debug(), 0)), std::string("<") + node.name() + "> " + found, fix);

@@ -11,11 +11,14 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_document.h"
 #include "core/base/log.h"
-#include "prepare/models/json_document.h"
 
 namespace skyquilt::prepare {
 namespace {
+
+using base::JsonDocument;
+using base::JsonValue;
 
 namespace fs = std::filesystem;
 
@@ -60,11 +63,11 @@ camera::Camera ToCamera(const JsonValue& camera, const Eigen::Vector2i& size) {
 }
 
 geo::Rigid3d PoseOfShot(const JsonValue& shot) {
-  const Eigen::Vector3d rotation = shot.At("rotation").Vector3();
+  const Eigen::Vector3d rotation(shot.At("rotation").Numbers(3).data());
   const double angle = rotation.norm();
   const Eigen::Quaterniond cam_from_world =
       angle > 0.0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, rotation / angle)) : Eigen::Quaterniond::Identity();
-  return {cam_from_world, shot.At("translation").Vector3()};
+  return {cam_from_world, Eigen::Vector3d(shot.At("translation").Numbers(3).data())};
 }
 
 JsonValue LargestReconstruction(const JsonDocument& document) {
@@ -120,11 +123,12 @@ void AddPoints(const JsonValue& points, const fs::path& tracks_file, const std::
   for (const auto& [id, point] : points.Members()) {
     std::array<uint8_t, 3> rgb{};
     if (const std::optional<JsonValue> color = point.Find("color")) {
-      const Eigen::Vector3d value = color->Vector3();
+      const Eigen::Vector3d value(color->Numbers(3).data());
       for (int i = 0; i < 3; ++i) rgb[static_cast<size_t>(i)] = static_cast<uint8_t>(std::clamp(value[i], 0.0, 255.0));
     }
     const auto track = photos_of_track.find(id);
-    builder.AddPoint(point.At("coordinates").Vector3(), rgb, track == photos_of_track.end() ? std::vector<uint32_t>{} : track->second);
+    builder.AddPoint(Eigen::Vector3d(point.At("coordinates").Numbers(3).data()), rgb,
+                     track == photos_of_track.end() ? std::vector<uint32_t>{} : track->second);
   }
 }
 

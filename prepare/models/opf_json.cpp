@@ -9,15 +9,18 @@
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
+#include "core/base/json_document.h"
 #include "core/base/log.h"
 #include "core/geo/crs.h"
 #include "core/geo/enu_frame.h"
 #include "core/linear/linear.h"
-#include "prepare/models/json_document.h"
 #include "prepare/models/opf_points.h"
 
 namespace skyquilt::prepare {
 namespace {
+
+using base::JsonDocument;
+using base::JsonValue;
 
 namespace fs = std::filesystem;
 
@@ -108,12 +111,12 @@ camera::Camera LensOfSensor(const JsonValue& sensor, const Eigen::Vector2i& size
 geo::Rigid3d PoseOfCamera(const JsonValue& camera) {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
-  const Vector3d angles = camera.At("orientation_deg").Vector3() * (std::numbers::pi / 180.0);
+  const Vector3d angles = Eigen::Vector3d(camera.At("orientation_deg").Numbers(3).data()) * (std::numbers::pi / 180.0);
   const Eigen::Matrix3d frame_from_image =
       (AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(angles.y(), Vector3d::UnitY()) * AngleAxisd(angles.z(), Vector3d::UnitZ()))
           .toRotationMatrix();
   // From right, top, back to right, down, forward.
-  return PoseFromCentre(frame_from_image * Vector3d(1.0, -1.0, -1.0).asDiagonal(), camera.At("position").Vector3());
+  return PoseFromCentre(frame_from_image * Vector3d(1.0, -1.0, -1.0).asDiagonal(), Eigen::Vector3d(camera.At("position").Numbers(3).data()));
 }
 
 // The system in which the positions are, with heights above a geoid left out where the project has a constant for them, or PROJ no grid: without it
@@ -139,8 +142,8 @@ std::optional<ModelPlace> PlaceOf(const fs::path& file, const survey::ColmapMode
   if (!definition.json().is_string()) definition.Fail("must be a text");
   const auto& text = definition.json().get_ref<const std::string&>();
   const JsonValue transform = document.Root().At("base_to_canonical");
-  const Eigen::Vector3d shift = transform.At("shift").Vector3();
-  const Eigen::Vector3d scale = transform.At("scale").Vector3();
+  const Eigen::Vector3d shift(transform.At("shift").Numbers(3).data());
+  const Eigen::Vector3d scale(transform.At("scale").Numbers(3).data());
   const bool swap_xy = transform.At("swap_xy").Boolean();
   if (!(scale.cwiseAbs().minCoeff() > 1e-9)) transform.At("scale").Fail("must not have a 0");
   const double geoid_height = crs.NumberOr0("geoid_height");

@@ -6,10 +6,13 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "prepare/models/json_document.h"
+#include "core/base/json_document.h"
 
 namespace skyquilt::prepare {
 namespace {
+
+using base::JsonDocument;
+using base::JsonValue;
 
 namespace fs = std::filesystem;
 

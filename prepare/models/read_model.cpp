@@ -5,9 +5,9 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_document.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
-#include "prepare/models/json_document.h"
 #include "prepare/models/metashape_xml.h"
 #include "prepare/models/opensfm_json.h"
 #include "prepare/models/opf_json.h"
@@ -15,6 +15,9 @@
 
 namespace skyquilt::prepare {
 namespace {
+
+using base::JsonDocument;
+using base::JsonValue;
 
 namespace fs = std::filesystem;
 

@@ -5,11 +5,14 @@
 #include <numbers>
 
 #include "core/base/cancel.h"
-#include "prepare/models/json_document.h"
+#include "core/base/json_document.h"
 #include "prepare/models/ply_points.h"
 
 namespace skyquilt::prepare {
 namespace {
+
+using base::JsonDocument;
+using base::JsonValue;
 
 constexpr const char* kFix = "Export the cameras again, for instance with 'ns-process-data'";
 

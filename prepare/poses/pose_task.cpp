@@ -148,9 +148,7 @@ void RunFeatureTask(const FeatureTask& task, int n_threads, const TaskProgress& 
     }
   }
   survey::ColmapDatabase(database).UseOneFile();
-  base::SyncPath(database);
-  fs::rename(database, task.file);
-  base::SyncPath(task.file.parent_path());
+  base::Publish(database, task.file);
   fs::remove(list);
   advance(total);
 }

@@ -31,8 +31,6 @@ class FileWriter {
   virtual std::vector<WrittenFile> Rows() const = 0;
 };
 
-// "335,120 triangles"; "1 triangle": adds an s to the unit for other counts than 1.
-std::string CountText(int64_t count, const std::string& unit);
 // "EPSG:32617 minus offset"; "local frame, metres".
 std::string OffsetCrsName(const MapFrame& frame);
 

@@ -1,5 +1,7 @@
 #include "surface/files/glb_writer.h"
 
+#include "core/base/amounts.h"
+
 namespace skyquilt::surface {
 
 GlbWriter::GlbWriter(const MapFrame& frame, const std::filesystem::path& folder, uint64_t max_bytes)
@@ -41,7 +43,7 @@ std::vector<WrittenFile> GlbWriter::Rows() const {
            .crs = OffsetCrsName(frame_),
            .vertical = frame_.VerticalName(),
            .bytes = static_cast<int64_t>(file_->size()),
-           .detail = CountText(document_.triangles(), "triangle") + ", " + CountText(document_.textures(), "texture")}};
+           .detail = base::CountText(document_.triangles(), "triangle") + ", " + base::CountText(document_.textures(), "texture")}};
 }
 
 GltfPlace GlbWriter::Place() const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/gis/crs.h"
 #include "surface/files/bytes.h"
@@ -136,8 +137,8 @@ std::vector<WrittenFile> LasWriter::Rows() const {
   if (parts_.empty()) return {};
   uint64_t bytes = 0;
   for (const auto& part : parts_) bytes += part->size();
-  std::string detail = CountText(points_, "point");
-  if (parts_.size() > 1) detail += " in " + CountText(static_cast<int64_t>(parts_.size()), "file");
+  std::string detail = base::CountText(points_, "point");
+  if (parts_.size() > 1) detail += " in " + base::CountText(static_cast<int64_t>(parts_.size()), "file");
   return {{.file = parts_.size() == 1 ? "cloud.las" : "cloud_1.las",
            .content = "point cloud",
            .format = "LAS 1.4",

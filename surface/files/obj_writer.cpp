@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 
+#include "core/base/amounts.h"
 #include "surface/files/georeference_file.h"
 
 namespace skyquilt::surface {
@@ -97,7 +98,7 @@ std::vector<WrittenFile> ObjWriter::Rows() const {
            .crs = OffsetCrsName(frame_),
            .vertical = frame_.VerticalName(),
            .bytes = static_cast<int64_t>(bytes),
-           .detail = CountText(triangles_, "triangle") + ", " + CountText(static_cast<int64_t>(textures_.size()), "texture")}};
+           .detail = base::CountText(triangles_, "triangle") + ", " + base::CountText(static_cast<int64_t>(textures_.size()), "texture")}};
 }
 
 }  // namespace skyquilt::surface

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "surface/files/bytes.h"
 #include "surface/files/georeference_file.h"
@@ -117,7 +118,7 @@ std::vector<WrittenFile> PlyMeshWriter::Rows() const {
            .crs = OffsetCrsName(frame_),
            .vertical = frame_.VerticalName(),
            .bytes = static_cast<int64_t>(vertices_->file().size()),
-           .detail = CountText(static_cast<int64_t>(triangles_), "triangle")}};
+           .detail = base::CountText(static_cast<int64_t>(triangles_), "triangle")}};
 }
 
 void PlyCloudWriter::AddPoints(std::span<const CloudPoint> points) {
@@ -147,7 +148,7 @@ std::vector<WrittenFile> PlyCloudWriter::Rows() const {
            .crs = OffsetCrsName(frame_),
            .vertical = frame_.VerticalName(),
            .bytes = static_cast<int64_t>(points_->file().size()),
-           .detail = CountText(static_cast<int64_t>(points_->count()), "point")}};
+           .detail = base::CountText(static_cast<int64_t>(points_->count()), "point")}};
 }
 
 }  // namespace skyquilt::surface

@@ -1,11 +1,10 @@
 #include "surface/files/tileset_writer.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
@@ -53,21 +52,15 @@ Json TileJson(const Nodes& nodes, const TileId& id) {
 }  // namespace
 
 TilesetWriter::TilesetWriter(const MapFrame& frame, double tile_size_m, const std::filesystem::path& folder)
-    : frame_(frame), earth_(frame), tile_size_m_(tile_size_m), folder_(folder / "tiles"), partial_(folder / "tiles.partial") {}
-
-TilesetWriter::~TilesetWriter() {
-  if (nodes_.empty() || published_) return;
-  std::error_code ignored;
-  std::filesystem::remove_all(partial_, ignored);
-}
+    : frame_(frame), earth_(frame), tile_size_m_(tile_size_m), folder_(folder / "tiles") {}
 
 void TilesetWriter::AddTile(const TexturedTile& tile, const MapVertices* /*in_map*/) {
   SKYQUILT_CHECK(!nodes_.contains(tile.id), "tile " + tile.id.Name() + " was added twice");
-  if (nodes_.empty()) {
+  if (!partial_) {
+    partial_.emplace(folder_);
     std::error_code error;
-    std::filesystem::remove_all(partial_, error);
-    if (!error) std::filesystem::create_directory(partial_, error);
-    if (error) base::ThrowFileError(partial_, "cannot be created", error.value());
+    std::filesystem::create_directory(partial_->path(), error);
+    if (error) base::ThrowFileError(partial_->path(), "cannot be created", error.value());
   }
   WriteContent(tile.id.Name(), tile, &nodes_[tile.id]);
 }
@@ -109,8 +102,9 @@ void TilesetWriter::WriteContent(const std::string& name, const TexturedTile& ti
   GltfDocument document;
   const std::vector<uint8_t> binary = document.Add(primitive);
   // The folder is renamed as a whole, so its files have their names from the start.
-  base::OutputFile file(partial_ / (name + ".glb"));
-  file.Append(document.Head(place, partial_ / (name + ".glb")));
+  const std::filesystem::path glb = partial_->path() / (name + ".glb");
+  base::OutputFile file(glb);
+  file.Append(document.Head(place, glb));
   file.Append(binary);
   file.Complete();
   file.Publish();
@@ -183,18 +177,16 @@ void TilesetWriter::Complete() {
   if (earth_.raised()) extras[kSurveyTransform] = ColumnMajor(geo::EcefFromEnu(frame_.origin()));
   tileset["geometricError"] = whole_m;
   tileset["root"] = root;
-  base::OutputFile file(partial_ / "tileset.json");
+  base::OutputFile file(partial_->path() / "tileset.json");
   file.Append(base::JsonText(tileset, 1) + "\n");
   file.Complete();
   file.Publish();
   bytes_ += file.size();
-  base::SyncPath(partial_);
+  base::SyncPath(partial_->path());
 }
 
 void TilesetWriter::Publish() {
-  if (nodes_.empty()) return;
-  if (std::rename(partial_.c_str(), folder_.c_str()) != 0) base::ThrowFileError(folder_, "cannot be renamed from " + partial_.string(), errno);
-  published_ = true;
+  if (partial_) partial_->Publish();
 }
 
 std::vector<WrittenFile> TilesetWriter::Rows() const {
@@ -206,7 +198,7 @@ std::vector<WrittenFile> TilesetWriter::Rows() const {
            .crs = frame_.georeferenced() ? "EPSG:4978" : frame_.CrsName(),
            .vertical = earth_.VerticalName(),
            .bytes = static_cast<int64_t>(bytes_),
-           .detail = CountText(static_cast<int64_t>(nodes_.size()), "tile") + " in " + CountText(levels, "level")}};
+           .detail = base::CountText(static_cast<int64_t>(nodes_.size()), "tile") + " in " + base::CountText(levels, "level")}};
 }
 
 }  // namespace skyquilt::surface

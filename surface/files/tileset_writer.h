@@ -6,7 +6,9 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 
+#include "core/base/partial_path.h"
 #include "surface/files/earth_place.h"
 #include "surface/files/file_writer.h"
 
@@ -16,7 +18,6 @@ class TilesetWriter : public FileWriter {
  public:
   // Keeps a reference to the frame. Throws base::InputError when heights have to be converted and PROJ has no geoid.
   TilesetWriter(const MapFrame& frame, double tile_size_m, const std::filesystem::path& folder);
-  ~TilesetWriter() override;
 
   // Throws std::logic_error for a tile that was added before.
   void AddTile(const TexturedTile& tile, const MapVertices* in_map) override;
@@ -38,11 +39,10 @@ class TilesetWriter : public FileWriter {
   const MapFrame& frame_;
   EarthPlace earth_;
   double tile_size_m_;
-  std::filesystem::path folder_;   // of the tiles, once complete
-  std::filesystem::path partial_;  // the same until then
+  std::filesystem::path folder_;              // of the tiles, once complete
+  std::optional<base::PartialPath> partial_;  // the same until then; from the first tile on
   std::map<TileId, Node> nodes_;
   uint64_t bytes_ = 0;
-  bool published_ = false;
 };
 
 }  // namespace skyquilt::surface

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"

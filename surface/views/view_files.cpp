@@ -1,11 +1,7 @@
 #include "surface/views/view_files.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <string_view>
 #include <system_error>
@@ -13,6 +9,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/output_file.h"
 #include "core/base/progress.h"
 #include "surface/views/view_record.h"
 
@@ -46,45 +43,6 @@ std::string Preamble(const ViewPose& pose, const std::string& key) {
   text.append(BytesOf(fixed_key)).append(BytesOf(record));
   return text;
 }
-
-// A file that is written piece by piece under a temporary name; it is removed again unless finished.
-class JoinedFile {
- public:
-  explicit JoinedFile(const std::filesystem::path& file) : file_(file), partial_(file.string() + ".tmp") {
-    descriptor_ = open(partial_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) base::ThrowFileError(partial_, "cannot create", errno);
-  }
-  ~JoinedFile() {
-    if (descriptor_ >= 0) close(descriptor_);
-    if (!finished_) unlink(partial_.c_str());
-  }
-  JoinedFile(const JoinedFile&) = delete;
-  JoinedFile& operator=(const JoinedFile&) = delete;
-
-  void Append(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t written = write(descriptor_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) base::ThrowFileError(partial_, "cannot write", errno);
-      bytes.remove_prefix(static_cast<size_t>(written));
-    }
-  }
-  void Finish() {
-    const int descriptor = descriptor_;
-    descriptor_ = -1;
-    // Network file systems report some write errors only here.
-    if (close(descriptor) != 0) base::ThrowFileError(partial_, "cannot write", errno);
-    base::SyncPath(partial_);
-    if (rename(partial_.c_str(), file_.c_str()) != 0) base::ThrowFileError(file_, "cannot write", errno);
-    finished_ = true;
-    base::SyncPath(file_.has_parent_path() ? file_.parent_path() : std::filesystem::path("."));
-  }
-
- private:
-  std::filesystem::path file_, partial_;
-  int descriptor_ = -1;
-  bool finished_ = false;
-};
 
 }  // namespace
 
@@ -133,7 +91,7 @@ void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const
   header.views = poses.size();
 
   base::Progress progress("joining surface views", static_cast<double>(poses.size()), "views");
-  JoinedFile joined(file);
+  base::OutputFile joined(file);
   joined.Append(BytesOf(header));
   joined.Append(BytesOf(records));
   for (size_t i = 0; i < poses.size(); ++i) {
@@ -146,7 +104,9 @@ void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const
     joined.Append(std::string(PictureBytes(poses[i]) - PixelsOf(poses[i]) * (sizeof(float) + 1), '\0'));
     progress.Update(static_cast<double>(i + 1));
   }
-  joined.Finish();
+  joined.Complete();
+  joined.Publish();
+  base::SyncPath(file.parent_path());
   progress.Finish();
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/base/amounts.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"

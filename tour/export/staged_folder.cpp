@@ -41,12 +41,6 @@ void Remove(const fs::path& path) {
   if (error) base::ThrowFileError(path, "cannot be removed", error.value());
 }
 
-void Move(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::rename(from, to, error);
-  if (error) base::ThrowFileError(to, "cannot be moved here from " + from.string(), error.value());
-}
-
 void RequireOurs(const fs::path& folder, const std::set<std::string>& expected) {
   if (HasManifest(folder)) return;
   for (const std::string& name : NamesIn(folder)) {
@@ -64,42 +58,35 @@ std::vector<std::string> ExportedNames() {
 
 StagedFolder::StagedFolder(const fs::path& folder, const std::set<std::string>& expected) : folder_(fs::absolute(folder).lexically_normal()) {
   if (!folder_.has_filename()) folder_ = folder_.parent_path();
-  partial_ = folder_;
-  partial_ += ".partial";
   std::error_code error;
   const fs::file_status status = fs::status(folder_, error);
   if (fs::exists(status)) {
     if (!fs::is_directory(status)) throw base::InputError(folder_, "is a file", "Give a folder for the tour");
     RequireOurs(folder_, expected);
   }
-  Remove(partial_);
-  base::RequireWritableFolder(partial_);
-}
-
-StagedFolder::~StagedFolder() {
-  std::error_code ignored;
-  fs::remove_all(partial_, ignored);
+  partial_.emplace(folder_);
+  base::RequireWritableFolder(partial());
 }
 
 void StagedFolder::Publish() {
-  base::SyncPath(partial_);
+  base::SyncPath(partial());
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) base::ThrowFileError(folder_, "cannot be created", error.value());
-  const std::vector<std::string> names = NamesIn(partial_);
+  const std::vector<std::string> names = NamesIn(partial());
   const fs::path data = folder_ / kData;
   Remove(folder_ / kIndex);
   // The data say whose the folder is: they are the last to go, in one step, and the first to come.
   for (const std::string_view name : kOurs) {
     if (name != kData) Remove(folder_ / name);
   }
-  if (fs::exists(fs::symlink_status(data, error))) Move(data, partial_ / "old");
-  Move(partial_ / kData, data);
+  if (fs::exists(fs::symlink_status(data, error))) base::Rename(data, partial() / "old");
+  base::Rename(partial() / kData, data);
   for (const std::string& name : names) {
-    if (name != kIndex && name != kData) Move(partial_ / name, folder_ / name);
+    if (name != kIndex && name != kData) base::Rename(partial() / name, folder_ / name);
   }
   base::SyncPath(folder_);
-  Move(partial_ / kIndex, folder_ / kIndex);
+  base::Rename(partial() / kIndex, folder_ / kIndex);
   base::SyncPath(folder_);
 }
 

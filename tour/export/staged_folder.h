@@ -4,9 +4,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "core/base/partial_path.h"
 
 namespace skyquilt::tour {
 
@@ -18,16 +21,14 @@ class StagedFolder {
   // expected: names of other files and folders that may be in the folder. Removes what a killed export left. Throws base::InputError when the folder
   // has something else in it but no export, and when nothing can be written beside it.
   StagedFolder(const std::filesystem::path& folder, const std::set<std::string>& expected);
-  ~StagedFolder();  // removes what was not published
-  StagedFolder(const StagedFolder&) = delete;
-  StagedFolder& operator=(const StagedFolder&) = delete;
 
-  const std::filesystem::path& partial() const { return partial_; }
+  const std::filesystem::path& partial() const { return partial_->path(); }
   // Moves all files and folders of partial(), index.html last. Those of the old export that the new one does not have are removed.
   void Publish();
 
  private:
-  std::filesystem::path folder_, partial_;
+  std::filesystem::path folder_;
+  std::optional<base::PartialPath> partial_;  // never published as a whole
 };
 
 }  // namespace skyquilt::tour

@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "core/base/amounts.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"

@@ -5,6 +5,7 @@
 
 #include "core/base/checked_json.h"
 #include "core/base/errors.h"
+#include "core/base/json_document.h"
 #include "products/camera_path.h"
 
 namespace skyquilt::viewer {
@@ -25,7 +26,7 @@ const Json& MemberOf(const Json& object, const char* key) {
 
 void CheckPosition(const Json& position, const std::string& where) {
   if (!position.is_array() || position.size() < 2 || position.size() > 4) throw base::Refused(where + " must have a position of 2 or 3 numbers");
-  for (const Json& number : position) base::RequireNumber(number, where);
+  for (const Json& number : position) base::JsonValue(number, where).Number();
 }
 
 void CheckPositions(const Json& positions, size_t least, const std::string& where) {
@@ -75,7 +76,7 @@ void CheckMeasurements(const Json& json) {
     if (!properties.is_object()) throw base::Refused(where + ".properties must be an object");
     const Json& name = MemberOf(properties, "name");
     const bool nameless = name.is_null() || (name.is_string() && name.get_ref<const std::string&>().empty());
-    if (!nameless) base::RequireLine(name, kMaxNameBytes, where + ".properties.name");
+    if (!nameless) base::JsonValue(name, where + ".properties.name").Text(kMaxNameBytes);
     CheckGeometry(MemberOf(features[i], "geometry"), where + ".geometry");
   }
 }
@@ -85,7 +86,7 @@ void CheckCameraPath(const Json& json, const std::string& text, const geo::Geode
   const Json& views = ViewsOf(json);
   for (size_t i = 0; i < views.size() && views.is_array(); ++i) {
     const Json& position = MemberOf(views[i], "position_enu");
-    for (const Json& number : position) base::RequireNumber(number, "views[" + std::to_string(i) + "].position_enu");
+    for (const Json& number : position) base::JsonValue(number, "views[" + std::to_string(i) + "].position_enu").Number();
   }
   scene::SceneInfo info;
   info.origin = origin;

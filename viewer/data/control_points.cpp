@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/checked_json.h"
+#include "core/base/json_document.h"
 #include "core/base/text.h"
 
 namespace skyquilt::viewer {
@@ -24,10 +25,10 @@ std::string LowerShortName(const std::string& name) {
 
 void CheckMark(const Json& mark, const MarkablePhotos& photos, const std::set<std::string>& allowed, const std::string& where) {
   if (!mark.is_object() || !mark.contains("photo") || !mark.contains("pixel")) throw base::Refused(where + " must have photo and pixel");
-  base::RequireLine(mark["photo"], kMaxPhotoName, where + ".photo");
+  base::JsonValue(mark["photo"], where + ".photo").Text(kMaxPhotoName);
   const Json& pixel = mark["pixel"];
   if (!pixel.is_array() || pixel.size() != 2) throw base::Refused(where + ".pixel must have 2 numbers");
-  for (const Json& number : pixel) base::RequireNumber(number, where + ".pixel");
+  for (const Json& number : pixel) base::JsonValue(number, where + ".pixel").Number();
   const std::string name = mark["photo"];
   if (!photos.Has(name)) {
     const bool said = mark.contains("unknown") && mark["unknown"].is_boolean() && mark["unknown"].get<bool>();
@@ -99,9 +100,9 @@ void CheckControlPoints(const Json& gcp, const std::optional<std::string>& crs, 
     const Json& point = points[i];
     const std::string where = "points[" + std::to_string(i) + "]";
     if (!point.is_object() || !point.contains("name")) throw base::Refused(where + " must have a name");
-    base::RequireLine(point["name"], kMaxPointName, where + ".name");
+    base::JsonValue(point["name"], where + ".name").Text(kMaxPointName);
     if (!names.insert(point["name"]).second) throw base::Refused(where + ".name is the name of another point too");
-    for (const char* axis : {"x", "y", "z"}) base::RequireNumber(point.contains(axis) ? point[axis] : Json(), where + "." + axis);
+    for (const char* axis : {"x", "y", "z"}) base::JsonValue(point.contains(axis) ? point[axis] : Json(), where + "." + axis).Number();
     if (!point.contains("marks") || !point["marks"].is_array()) throw base::Refused(where + ".marks must be a list");
     std::set<std::string> marked;
     for (size_t k = 0; k < point["marks"].size(); ++k) {

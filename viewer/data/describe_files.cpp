@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/checked_json.h"
 #include "core/base/errors.h"
 #include "core/gis/read_maps.h"
 
@@ -49,7 +50,7 @@ void DescribeSurface(OpenedProject* opened) {
   std::string reason = "there is no textured surface yet";
   if (finished) {
     const auto number = [&](const char* key) {
-      const double value = NumberIn(table.json, key);
+      const double value = base::NumberIn(table.json, key);
       return value > 0.0 && value < 1e15 ? value : 0.0;
     };
     json["surface"] = {{"triangles", static_cast<int64_t>(number("triangles"))},
@@ -60,7 +61,7 @@ void DescribeSurface(OpenedProject* opened) {
     opened->contours = Exists(folder / "contours.gpkg");
     if (!opened->tiles.empty()) json["tiles"] = "tiles/tileset.json";
     if (opened->contours) json["contours"] = "contours.json";
-    const bool none = NumberIn(table.json, "triangles") == 0.0;
+    const bool none = base::NumberIn(table.json, "triangles") == 0.0;
     reason = none ? "no surface was found in the scene: see the log of 'skyquilt surface'" : "the surface was made without tiles (surface.tiles)";
     if (!none) advice = Command(*opened, "surface --restart --set surface.tiles=true");
   } else if (table.damaged) {
@@ -112,7 +113,7 @@ void DescribeBlocks(OpenedProject* opened, const std::optional<partition::BlockS
                       {"max_enu", ListOf(block.max_enu)},
                       {"empty", block.empty},
                       {"photos", block.photos.size()},
-                      {"psnr_db", NullIfUnknown(NumberIn(per_block, block.name))}});
+                      {"psnr_db", NullIfUnknown(base::NumberIn(per_block, block.name))}});
     }
   }
   opened->description["blocks"] = std::move(list);
@@ -139,7 +140,7 @@ void DescribePhotos(OpenedProject* opened, const Json& metrics) {
                         {"position", ListOf(photo.cam_from_enu.OriginInSource())},
                         {"rotation", {q.w(), q.x(), q.y(), q.z()}},
                         {"is_test", photo.is_test},
-                        {"psnr_db", NullIfUnknown(NumberIn(per_photo, photo.name))},
+                        {"psnr_db", NullIfUnknown(base::NumberIn(per_photo, photo.name))},
                         {"available", available}});
     }
     if (gone > 0) {
@@ -164,9 +165,9 @@ void DescribeMetrics(OpenedProject* opened, const JsonFile& file) {
   }
   Json kept = Json::object();
   for (const char* key : {"psnr", "ssim", "flip", "lpips", "coverage", "psnr_full_frame", "depth_rmse_m", "depth_median_abs_m", "seam_psnr_gap_db"}) {
-    kept[key] = NullIfUnknown(NumberIn(metrics, key));
+    kept[key] = NullIfUnknown(base::NumberIn(metrics, key));
   }
-  if (metrics.contains("surface")) kept["surface_psnr"] = NullIfUnknown(NumberIn(metrics["surface"], "psnr"));
+  if (metrics.contains("surface")) kept["surface_psnr"] = NullIfUnknown(base::NumberIn(metrics["surface"], "psnr"));
   opened->description["metrics"] = std::move(kept);
 }
 

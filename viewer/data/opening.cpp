@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <string_view>
 #include <utility>
 
 #include "coordinator/project/stamp.h"
+#include "core/base/checked_json.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/json_text.h"
 
 namespace skyquilt::viewer::opening {
 namespace {
@@ -60,17 +59,12 @@ bool IsUnfinished(const OpenedProject& opened, const std::string& stage) {
 JsonFile ReadJson(const std::filesystem::path& file) {
   if (!Exists(file)) return {};
   try {
-    nlohmann::json json = base::TryParseJson(base::ReadFile(file));
+    nlohmann::json json = base::ParseDocument(base::ReadFile(file));
     if (json.is_object()) return {std::move(json), false};
+  } catch (const base::Refused&) {
   } catch (const base::InputError&) {
   }
   return {nullptr, true};
-}
-
-double NumberIn(const nlohmann::json& json, const std::string& key) {
-  if (!json.is_object()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at = json.find(key);
-  return at != json.end() && at->is_number() ? at->get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace skyquilt::viewer::opening

@@ -26,8 +26,6 @@ struct JsonFile {
   bool damaged = false;
 };
 JsonFile ReadJson(const std::filesystem::path& file);
-// NaN when there is no such number.
-double NumberIn(const nlohmann::json& json, const std::string& key);
 nlohmann::json NullIfUnknown(double value);
 nlohmann::json ListOf(const Eigen::Vector3d& vector);
 

@@ -8,6 +8,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "core/camera/corner_radius.h"
 #include "products/camera_path.h"
 #include "products/product_options.h"
 
@@ -240,14 +241,11 @@ void SceneHolder::RenderAsPhoto(int photo, std::span<const render::Ray> rays, st
   const survey::Photo& taken = survey->photos[static_cast<size_t>(photo)];
   const std::optional<size_t> index = response.Find(taken.name);
   if (!index) return;
-  // Gain and vignetting, as evaluate/apply_response.cpp.
   const camera::Camera& camera = survey->cameras.at(static_cast<size_t>(taken.camera));
-  const double per_radius2 = 1.0 / (camera.MaxImageRadius() * camera.MaxImageRadius());
+  const camera::CornerRadius radius(camera);
   for (size_t i = 0; i < rays.size(); ++i) {
     const auto pixel = camera.ImgFromCam(taken.cam_from_enu.rotation * rays[i].direction_enu);
-    const double radius2 = pixel ? (*pixel - camera.PrincipalPoint()).squaredNorm() * per_radius2 : 0.0;
-    const std::array<brightness::Exposure, 3> exposure = response.ExposureOf(*index, static_cast<float>(std::min(1.0, radius2)));
-    for (size_t c = 0; c < 3; ++c) out[i].rgb_srgb[c] = brightness::Expose(out[i].rgb_srgb[c], exposure[c]).value;
+    brightness::Expose(response.ExposureOf(*index, pixel ? std::min(1.0F, radius.Squared(*pixel)) : 0.0F), out[i].rgb_srgb);
   }
 }
 

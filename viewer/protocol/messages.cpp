@@ -4,32 +4,38 @@
 #include <cmath>
 #include <limits>
 
-#include "viewer/protocol/json_fields.h"
+#include "core/base/checked_json.h"
+#include "core/base/json_object.h"
 
 namespace skyquilt::viewer {
 namespace {
 
 constexpr double kLengthTolerance = 1e-3;  // of a rotation's quaternion
 constexpr double kShortestDirection = 1e-6;
+constexpr int kMaxMessageDepth = 4;
 
-Which ProjectOf(JsonFields& fields) {
+uint32_t U32(base::JsonObject& fields, const char* key) {
+  return static_cast<uint32_t>(fields.Integer(key, 0, std::numeric_limits<uint32_t>::max()));
+}
+
+Which ProjectOf(base::JsonObject& fields) {
   return fields.OneOf("project", {"main", "before"}) == 0 ? Which::kMain : Which::kBefore;
 }
 
 template <int kN>
-Eigen::Matrix<double, kN, 1> Coordinates(JsonFields& fields, const char* key) {
+Eigen::Matrix<double, kN, 1> Coordinates(base::JsonObject& fields, const char* key) {
   Eigen::Matrix<double, kN, 1> x;
   fields.Numbers(key, kMaxCoordinateM, {x.data(), static_cast<size_t>(kN)});
   return x;
 }
 
-Hello ReadHello(JsonFields& fields) {
+Hello ReadHello(base::JsonObject& fields) {
   return {.version = static_cast<int>(fields.Integer("version", 0, std::numeric_limits<int>::max()))};
 }
 
-ViewRequest ReadView(JsonFields& fields) {
+ViewRequest ReadView(base::JsonObject& fields) {
   ViewRequest view;
-  view.seq = fields.U32("seq");
+  view.seq = U32(fields, "seq");
   view.width = static_cast<int>(fields.Integer("w", kMinViewSize, kMaxViewSize));
   if (fields.Has("photo")) {
     view.photo = static_cast<int>(fields.Integer("photo", 0, std::numeric_limits<int>::max()));
@@ -52,13 +58,13 @@ ViewRequest ReadView(JsonFields& fields) {
   return view;
 }
 
-FrameAck ReadAck(JsonFields& fields) {
-  return {.seq = fields.U32("seq"), .pass = static_cast<int>(fields.Integer("pass", 0, 255))};
+FrameAck ReadAck(base::JsonObject& fields) {
+  return {.seq = U32(fields, "seq"), .pass = static_cast<int>(fields.Integer("pass", 0, 255))};
 }
 
-PickRequest ReadPick(JsonFields& fields) {
+PickRequest ReadPick(base::JsonObject& fields) {
   PickRequest pick;
-  pick.id = fields.U32("id");
+  pick.id = U32(fields, "id");
   pick.project = ProjectOf(fields);
   pick.origin_enu = Coordinates<3>(fields, "origin");
   pick.direction_enu = Coordinates<3>(fields, "direction");
@@ -69,13 +75,13 @@ PickRequest ReadPick(JsonFields& fields) {
   return pick;
 }
 
-PhotosAtRequest ReadPhotosAt(JsonFields& fields) {
-  return {.id = fields.U32("id"), .point_enu = Coordinates<3>(fields, "point")};
+PhotosAtRequest ReadPhotosAt(base::JsonObject& fields) {
+  return {.id = U32(fields, "id"), .point_enu = Coordinates<3>(fields, "point")};
 }
 
-ProfileRequest ReadProfile(JsonFields& fields) {
+ProfileRequest ReadProfile(base::JsonObject& fields) {
   ProfileRequest profile;
-  profile.id = fields.U32("id");
+  profile.id = U32(fields, "id");
   profile.project = ProjectOf(fields);
   profile.from_enu = Coordinates<2>(fields, "from");
   profile.to_enu = Coordinates<2>(fields, "to");
@@ -84,11 +90,11 @@ ProfileRequest ReadProfile(JsonFields& fields) {
   return profile;
 }
 
-VolumeRequest ReadVolume(JsonFields& fields) {
+VolumeRequest ReadVolume(base::JsonObject& fields) {
   VolumeRequest volume;
-  volume.id = fields.U32("id");
+  volume.id = U32(fields, "id");
   volume.project = ProjectOf(fields);
-  volume.polygon_enu = fields.Points("polygon", 3, kMaxPolygonCorners, kMaxCoordinateM);
+  for (const auto& [x, y] : fields.Pairs("polygon", 3, kMaxPolygonCorners, kMaxCoordinateM)) volume.polygon_enu.emplace_back(x, y);
   if (!IsSimplePolygon(volume.polygon_enu)) fields.Refuse("polygon", "its edges must not cross or touch each other, and it must have an area");
   // In the order of VolumeBase.
   volume.base = static_cast<VolumeBase>(fields.OneOf("base", {"plane", "lowest", "height", "before"}));
@@ -98,31 +104,46 @@ VolumeRequest ReadVolume(JsonFields& fields) {
   return volume;
 }
 
-ClientMessage ReadMessage(JsonFields& fields) {
-  const std::string type = fields.Text("type");
+std::string TypeOf(base::JsonObject& fields) {
+  const auto type = fields.Find("type");
+  if (!type || !type->json().is_string()) throw BadMessage("type: must be a text");
+  return type->json().get<std::string>();
+}
+
+ClientMessage ReadMessage(const std::string& type, base::JsonObject& fields) {
   if (type == "hello") return ReadHello(fields);
   if (type == "view") return ReadView(fields);
-  if (type == "stop") return StopView{.seq = fields.U32("seq")};
+  if (type == "stop") return StopView{.seq = U32(fields, "seq")};
   if (type == "ack") return ReadAck(fields);
   if (type == "pick") return ReadPick(fields);
   if (type == "photos_at") return ReadPhotosAt(fields);
   if (type == "profile") return ReadProfile(fields);
   if (type == "volume") return ReadVolume(fields);
-  if (type == "error_map") return ErrorMapRequest{.id = fields.U32("id")};
-  if (type == "cancel") return CancelRequest{.id = fields.U32("id")};
-  throw BadMessage("type: " + Quoted(type) + " is not known");
+  if (type == "error_map") return ErrorMapRequest{.id = U32(fields, "id")};
+  if (type == "cancel") return CancelRequest{.id = U32(fields, "id")};
+  throw BadMessage("type: \"" + base::ShownStart(type) + "\" is not known");
 }
 
 }  // namespace
 
 ClientMessage ParseClientMessage(std::string_view text) {
+  if (text.size() > kMaxMessageBytes) throw BadMessage("a message has at most " + std::to_string(kMaxMessageBytes) + " bytes");
+  if (base::NestingOf(text) > kMaxMessageDepth) {
+    throw BadMessage("a message has at most " + std::to_string(kMaxMessageDepth) + " levels of brackets");
+  }
+  std::string type;
   try {
-    JsonFields fields(text, kMaxMessageBytes);
-    ClientMessage message = ReadMessage(fields);
-    fields.RefuseOthers();
+    const nlohmann::json document = base::ParseDocument(text, base::RepeatedKeys::kRefused);
+    base::JsonObject fields{base::JsonValue(document)};
+    type = TypeOf(fields);
+    ClientMessage message = ReadMessage(type, fields);
+    for (const std::string& key : fields.Rest()) throw BadMessage(type + ": the key \"" + base::ShownStart(key) + "\" is not allowed here");
     return message;
   } catch (const BadMessage&) {
     throw;
+  } catch (const base::Refused& refused) {
+    throw BadMessage(refused.place().empty() ? std::string("the message cannot be read: ") + refused.what()
+                                             : type + "." + refused.place() + ": " + refused.rule());
   } catch (const std::exception&) {
     throw BadMessage("the message cannot be read");
   }

@@ -16,7 +16,7 @@ constexpr int kColorPixels = 4;
 }  // namespace
 
 RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixels, const brightness::Response& response)
-    : survey_(survey), pixels_(pixels), response_(response) {
+    : pixels_(pixels), response_(response) {
   std::map<std::tuple<int, int, int>, size_t> known;  // camera and size
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
@@ -28,7 +28,7 @@ RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixe
     }
     pitch_of_.push_back(entry->second);
     enu_from_cam_.push_back(photo.cam_from_enu.Inverse());
-    per_radius2_.push_back(1.0 / (cameras_.back().MaxImageRadius() * cameras_.back().MaxImageRadius()));
+    corner_radii_.emplace_back(cameras_.back());
   }
   UpdateExposures();
 }
@@ -49,11 +49,6 @@ void RaySource::RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vecto
   const geo::Rigid3d& pose = enu_from_cam_[i];
   *origin_enu = pose.translation;
   *direction_enu = (pose.rotation * lenses_[pitch_of_[i]].RayFromImg(pixel)).normalized();
-}
-
-float RaySource::Radius2(int photo, const Eigen::Vector2d& pixel) const {
-  const auto i = static_cast<size_t>(photo);
-  return static_cast<float>((pixel - cameras_[i].PrincipalPoint()).squaredNorm() * per_radius2_[i]);
 }
 
 Eigen::Vector2d RaySource::TileCentre(const Tile& tile) const {

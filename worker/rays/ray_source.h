@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "core/brightness/response.h"
 #include "core/camera/camera.h"
+#include "core/camera/corner_radius.h"
 #include "core/camera/lens.h"
 #include "core/camera/pixel_pitch.h"
 #include "core/image/pixel_cache.h"
@@ -77,8 +78,8 @@ class RaySource {
   void RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vector3d* origin_enu, Eigen::Vector3d* direction_enu) const;
   // Mean display values of a photo's tiles at reference exposure, [row][column], each from a few of its pixels; NaN where all of them are masked.
   std::vector<Eigen::Vector3f> TileColors(int photo) const;
-  // Squared distance from the principal point, relative to that of the farthest corner.
-  float Radius2(int photo, const Eigen::Vector2d& pixel) const;
+  // As camera::CornerRadius::Squared, in the cached image.
+  float Radius2(int photo, const Eigen::Vector2d& pixel) const { return corner_radii_[static_cast<size_t>(photo)].Squared(pixel); }
   // Pixel position of a tile's centre.
   Eigen::Vector2d TileCentre(const Tile& tile) const;
 
@@ -86,7 +87,6 @@ class RaySource {
   // The ray of a square of photo pixels whose first is (x, y); false when it is masked.
   bool RayOf(int photo, int x, int y, int level, bool empty, PixelRay* ray) const;
 
-  const survey::Survey& survey_;
   const image::PixelCache& pixels_;
   const brightness::Response& response_;
   std::vector<camera::Camera> cameras_;                         // per photo, at cached size
@@ -95,7 +95,7 @@ class RaySource {
   std::vector<size_t> pitch_of_;                                // per photo, index of the two above
   std::vector<geo::Rigid3d> enu_from_cam_;                      // per photo
   std::vector<std::array<brightness::Exposure, 3>> exposures_;  // per photo, on the axis
-  std::vector<double> per_radius2_;                             // per photo: 1 / squared pixels from the principal point to the farthest corner
+  std::vector<camera::CornerRadius> corner_radii_;              // per photo
   std::vector<Tile> inside_, empty_;
   double empty_share_ = 0.0;
 };

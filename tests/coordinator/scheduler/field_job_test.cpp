@@ -37,6 +37,7 @@ TEST(FieldJob, OutcomeReadsBackUnchangedEvenWithStrangeText) {
   outcome.result.samples = (int64_t{1} << 60) + 1;
   outcome.result.final_psnr_db = std::numeric_limits<double>::quiet_NaN();
   outcome.peak_rss_bytes = 123456789012;
+  outcome.saved_bytes = 5000000000;
   outcome.result.phase_seconds[3] = 1.5;
   outcome.result.falls = {{5223, 23.6, 15.9, 4992}, {6000, 23.5, std::numeric_limits<double>::quiet_NaN(), 5504}};
   outcome.result.comparison = worker::ContextComparison{15.5, 20.25, true};
@@ -45,6 +46,7 @@ TEST(FieldJob, OutcomeReadsBackUnchangedEvenWithStrangeText) {
   EXPECT_NE(back.failure.reason.find("\"quoted\"\nsecond line"), std::string::npos);
   EXPECT_EQ(back.result.samples, outcome.result.samples);
   EXPECT_EQ(back.peak_rss_bytes, outcome.peak_rss_bytes);
+  EXPECT_EQ(back.saved_bytes, outcome.saved_bytes);
   EXPECT_EQ(back.result.phase_seconds, outcome.result.phase_seconds);
   ASSERT_EQ(back.result.falls.size(), 2U);
   EXPECT_EQ(back.result.falls[0].restored_step, 4992);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace skyquilt::base {
@@ -18,23 +18,26 @@ TEST(CheckedJson, RefusesWhatIsNotJsonOrTooDeep) {
   EXPECT_NO_THROW(ParseDocument("\"" + std::string(100, '[') + "\"")) << "brackets in texts are no nesting";
 }
 
-TEST(CheckedJson, NamesThePlace) {
-  const auto reason = [](const auto& check) -> std::string {
-    try {
-      check();
-    } catch (const Refused& refused) {
-      return refused.what();
-    }
-    return "";
-  };
-  EXPECT_TRUE(reason([] { RequireNumber("1", "a[3].b"); }).starts_with("a[3].b must be a number"));
-  EXPECT_TRUE(reason([] { RequireNumber(std::numeric_limits<double>::quiet_NaN(), "a"); }).starts_with("a must be a number"));
-  EXPECT_TRUE(reason([] { RequireNumber(1.1e9, "a"); }).starts_with("a must be a number"));
-  EXPECT_EQ(reason([] { RequireNumber(-1e9, "a"); }), "");
-  EXPECT_EQ(reason([] { RequireLine("two\nlines", 80, "a.title"); }), "a.title must be one line");
-  EXPECT_TRUE(reason([] { RequireLine("", 80, "a"); }).starts_with("a must be a text"));
-  EXPECT_TRUE(reason([] { RequireLine("abc", 2, "a"); }).starts_with("a must be a text"));
-  EXPECT_EQ(reason([] { RequireLine("<script>", 80, "a"); }), "");
+TEST(CheckedJson, RefusesRepeatedKeysWhereAsked) {
+  const std::string text = R"({"a": {"b": 1, "c": {"b": 2}}, "b": [{"a": 1}, {"a": 1}]})";
+  EXPECT_NO_THROW(ParseDocument(text, RepeatedKeys::kRefused)) << "of different objects";
+  const std::string twice = R"({"a": [{"b": 1, "c": 2, "b": 3}]})";
+  EXPECT_EQ(ParseDocument(twice)["a"][0]["b"], 3);
+  EXPECT_THROW(ParseDocument(twice, RepeatedKeys::kRefused), Refused);
+  EXPECT_THROW(ParseDocument("{", RepeatedKeys::kRefused), Refused);
+}
+
+TEST(CheckedJson, ShowsTheStartOfATextFromOutside) {
+  EXPECT_EQ(ShownStart("seq"), "seq");
+  EXPECT_EQ(ShownStart("a\n\"b\\\xC3 x"), "a??b?? x");
+  EXPECT_EQ(ShownStart(std::string(41, 'x')), std::string(40, 'x') + "...");
+}
+
+TEST(CheckedJson, NumbersOfOurFilesMayBeMissing) {
+  const nlohmann::json json = {{"a", 1.5}, {"b", nullptr}};
+  EXPECT_EQ(NumberIn(json, "a"), 1.5);
+  EXPECT_EQ(NumberIn(json, "b", 7.0), 7.0);
+  EXPECT_TRUE(std::isnan(NumberIn(json, "c")) && std::isnan(NumberIn(nullptr, "a")));
 }
 
 TEST(CheckedJson, FindsTheEndOfATextWithQuotesAndBackslashesInIt) {

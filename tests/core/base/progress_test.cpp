@@ -75,26 +75,5 @@ TEST(Progress, QuietIsSilent) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(Format, Durations) {
-  EXPECT_EQ(FormatDuration(0.0), "0.0s");
-  EXPECT_EQ(FormatDuration(12.34), "12.3s");
-  EXPECT_EQ(FormatDuration(59.97), "1m00s");
-  EXPECT_EQ(FormatDuration(200.0), "3m20s");
-  EXPECT_EQ(FormatDuration(3599.7), "1h00m");
-  EXPECT_EQ(FormatDuration(3720.0), "1h02m");
-  EXPECT_EQ(FormatDuration(std::numeric_limits<double>::quiet_NaN()), "?");
-  EXPECT_EQ(FormatDuration(std::numeric_limits<double>::infinity()), "?");
-}
-
-TEST(Format, Counts) {
-  EXPECT_EQ(FormatCount(0.0), "0");
-  EXPECT_EQ(FormatCount(532.0), "532");
-  EXPECT_EQ(FormatCount(0.25), "0.25");
-  EXPECT_EQ(FormatCount(999.7), "1.00 k");
-  EXPECT_EQ(FormatCount(12345.0), "12.3 k");
-  EXPECT_EQ(FormatCount(1.5e6), "1.50 M");
-  EXPECT_EQ(FormatCount(-2.0e9), "-2.00 G");
-}
-
 }  // namespace
 }  // namespace skyquilt::base

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace skyquilt::base {
@@ -71,6 +73,16 @@ TEST(Random, NormalHasUnitMoments) {
   EXPECT_NEAR(sum / kDraws, 0.0, 0.011);
   EXPECT_NEAR(squares / kDraws, 1.0, 0.016);
   EXPECT_NEAR(fourths / kDraws, 3.0, 0.11);
+}
+
+TEST(RandomToken, IsAnotherEveryTime) {
+  std::set<std::string> tokens;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string token = RandomToken();
+    EXPECT_EQ(token.size(), 16U);
+    EXPECT_EQ(token.find_first_not_of("0123456789abcdef"), std::string::npos) << token;
+    EXPECT_TRUE(tokens.insert(token).second) << token;
+  }
 }
 
 }  // namespace

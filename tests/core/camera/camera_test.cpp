@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/random.h"
+#include "core/camera/corner_radius.h"
 
 namespace skyquilt::camera {
 namespace {
@@ -73,6 +74,16 @@ TEST(Camera, RayOfThePrincipalPointIsForward) {
     EXPECT_GT(right.x(), camera.PrincipalPoint().x());
     EXPECT_GT(down.y(), camera.PrincipalPoint().y());
   }
+}
+
+TEST(CornerRadius, IsOneAtTheFarthestCorner) {
+  const Camera camera{CameraModel::kSimplePinhole, 4000, 3000, {2850.0, 2100.0, 1500.0}};
+  const CornerRadius radius(camera);
+  EXPECT_EQ(radius.Squared(camera.PrincipalPoint()), 0.0F);
+  EXPECT_FLOAT_EQ(radius.Squared({0.0, 0.0}), 1.0F);
+  EXPECT_FLOAT_EQ(radius.Squared({0.0, 3000.0}), 1.0F);
+  EXPECT_LT(radius.Squared({4000.0, 3000.0}), 1.0F);
+  EXPECT_FLOAT_EQ(radius.Squared({1050.0, 750.0}), 0.25F);
 }
 
 // Worked by hand from the formulas in COLMAP src/colmap/sensor/models.h at u = 0.5, v = 0.25 (r^2 = 0.3125).

@@ -54,6 +54,18 @@ TEST(FormatCounts, UseUnits) {
   EXPECT_EQ(FormatPercent(0.934), "93.4\xE2\x80\xAF%");
 }
 
+TEST(FormatDuration, SpellsUnits) {
+  constexpr const char* kSpace = "\xE2\x80\xAF";
+  const auto with_spaces = [&](std::string text) {
+    for (size_t at = text.find('_'); at != std::string::npos; at = text.find('_')) text.replace(at, 1, kSpace);
+    return text;
+  };
+  EXPECT_EQ(FormatDuration(24.49), with_spaces("24.5_s"));
+  EXPECT_EQ(FormatDuration(624.0), with_spaces("10_min 24_s"));
+  EXPECT_EQ(FormatDuration(7500.0), with_spaces("2_h 05_min"));
+  EXPECT_EQ(FormatDuration(kNan), "\xE2\x80\x93");
+}
+
 TEST(NumberCell, SortsByTheNumberNotByItsText) {
   EXPECT_EQ(NumberCell(2.5, "two"), "<td class=\"num\" data-v=\"2.5\">two</td>");
   EXPECT_EQ(NumberCell(kNan, "-"), "<td class=\"num\" data-v=\"\">-</td>");

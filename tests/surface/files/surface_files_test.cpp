@@ -54,14 +54,6 @@ TEST(SurfaceFiles, TableTellsWhatWasWritten) {
   EXPECT_EQ(table[5].detail, "10 tiles in 3 levels");
 }
 
-TEST(SurfaceFiles, CountsAreGroupedByThousands) {
-  EXPECT_EQ(CountText(0, "triangle"), "0 triangles");
-  EXPECT_EQ(CountText(1, "triangle"), "1 triangle");
-  EXPECT_EQ(CountText(999, "point"), "999 points");
-  EXPECT_EQ(CountText(335120, "triangle"), "335,120 triangles");
-  EXPECT_EQ(CountText(20000000, "point"), "20,000,000 points");
-}
-
 TEST(SurfaceFiles, SameInputGivesTheSameBytes) {
   const TemporaryFolder one, other;
   const MapFrame frame(SampleInfo(kToronto));

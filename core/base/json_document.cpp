@@ -1,18 +1,25 @@
-#include "prepare/models/json_document.h"
+#include "core/base/json_document.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/base/checked_json.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::base {
 namespace {
 
 using Offsets = std::unordered_map<const nlohmann::json*, size_t>;
+
+std::string MemberPath(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
 
 // Follows the text and the values read from it side by side until it meets one value: the parser does not keep positions. The text is valid JSON, and
 // not nested deeply.
@@ -47,8 +54,8 @@ class JsonLocator {
   void SkipSpace() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }
   std::string SkipString() {
     const size_t begin = at_;
-    at_ = base::EndOfText(text_, begin);
-    const nlohmann::json value = base::TryParseJson(text_.substr(begin, at_ - begin));
+    at_ = EndOfText(text_, begin);
+    const nlohmann::json value = TryParseJson(text_.substr(begin, at_ - begin));
     return value.is_string() ? value.get<std::string>() : std::string();
   }
   // After a member; true at the end of the list or object.
@@ -70,7 +77,7 @@ class JsonLocator {
       ++at_;  // colon
       const auto child = node == nullptr ? nlohmann::json::const_iterator() : node->find(key);
       const bool known = node != nullptr && child != node->end();
-      if (Walk(known ? &*child : nullptr, path.empty() ? key : path + "." + key)) return true;
+      if (Walk(known ? &*child : nullptr, MemberPath(path, key))) return true;
     } while (!Ends());
     return false;
   }
@@ -99,8 +106,19 @@ class JsonLocator {
 
 // For a message: long lists are cut off.
 std::string ShownJson(const nlohmann::json& value) {
-  std::string text = value.is_structured() ? value.type_name() : base::JsonText(value);
+  std::string text = value.is_structured() ? value.type_name() : JsonText(value);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+// 10, 0.5, 1e9.
+std::string BoundText(double value) {
+  std::string text = fmt::format("{:g}", value);
+  const size_t exponent = text.find('e');
+  if (exponent != std::string::npos) {
+    const std::string sign = text[exponent + 1] == '-' ? "-" : "";
+    text = text.substr(0, exponent + 1) + sign + text.substr(text.find_first_not_of("+-0", exponent + 1));
+  }
   return text;
 }
 
@@ -113,7 +131,7 @@ std::optional<std::string> WithNumbers(const std::string& text) {
   std::optional<std::string> changed;
   for (size_t i = 0; i < text.size();) {
     if (text[i] == '"') {
-      i = base::EndOfText(text, i);
+      i = EndOfText(text, i);
       continue;
     }
     const auto no_number =
@@ -131,41 +149,46 @@ std::optional<std::string> WithNumbers(const std::string& text) {
 
 }  // namespace
 
+std::string RangeText(double min, double max) {
+  return "from " + BoundText(min) + " to " + BoundText(max);
+}
+
 size_t LineOf(std::string_view text, size_t offset) {
   const std::string_view before = text.substr(0, offset);
   return 1 + static_cast<size_t>(std::count(before.begin(), before.end(), '\n'));
 }
 
-JsonDocument::JsonDocument(const std::filesystem::path& file, const std::string& fix) : file_(file), fix_(fix), text_(base::ReadFile(file)) {
+JsonDocument::JsonDocument(const std::filesystem::path& file, const std::string& fix) : file_(file), fix_(fix), text_(ReadFile(file)) {
   try {
-    json_ = base::ParseDocument(text_);
+    json_ = ParseDocument(text_);
     return;
-  } catch (const base::Refused& refused) {
-    if (std::string(refused.what()).find("nested") != std::string::npos) throw base::InputError(file, refused.what(), fix);
+  } catch (const Refused& refused) {
+    if (std::string(refused.what()).find("nested") != std::string::npos) throw InputError(file, refused.what(), fix);
   }
   if (const std::optional<std::string> text = WithNumbers(text_)) {
-    json_ = base::TryParseJson(*text);
+    json_ = TryParseJson(*text);
     has_nan_ = !json_.is_discarded();
     if (has_nan_) return;
   }
   try {
-    json_ = base::ParseJson(text_);
+    json_ = ParseJson(text_);
   } catch (const nlohmann::json::parse_error& error) {
     const size_t offset = std::min(error.byte == 0 ? 0 : error.byte - 1, text_.size());
     const std::string found = offset >= text_.size() ? ": the file ends too early" : "";
-    throw base::InputError(file, "line " + std::to_string(LineOf(text_, offset)) + ": is not JSON" + found, fix);
+    throw InputError(file, "line " + std::to_string(LineOf(text_, offset)) + ": is not JSON" + found, fix);
   } catch (const nlohmann::json::exception&) {
-    throw base::InputError(file, "has a number that is too large", fix);
+    throw InputError(file, "has a number that is too large", fix);
   }
 }
 
-void JsonDocument::Fail(const nlohmann::json& value, const std::string& found, const std::string& fix) const {
+void JsonDocument::Fail(const nlohmann::json& value, const std::string& key, const std::string& found, const std::string& fix) const {
   JsonLocator locator(text_, &value);
   std::string where;
   if (locator.Walk(&json_, "")) {
-    where = "line " + std::to_string(LineOf(text_, locator.offset())) + ": " + (locator.path().empty() ? "the file" : locator.path()) + " ";
+    const std::string path = key.empty() ? locator.path() : MemberPath(locator.path(), key);
+    where = "line " + std::to_string(LineOf(text_, locator.offset())) + ": " + (path.empty() ? "the file" : path) + " ";
   }
-  throw base::InputError(file_, where + found, fix.empty() ? fix_ : fix);
+  throw InputError(file_, where + found, fix.empty() ? fix_ : fix);
 }
 
 int JsonDocument::LineOfValue(const nlohmann::json& value) const {
@@ -186,16 +209,30 @@ std::string JsonDocument::Shown(const nlohmann::json& value) const {
   return ShownJson(value);
 }
 
-std::string JsonValue::Shown() const {
-  return document_->Shown(*value_);
+JsonValue JsonValue::Child(const nlohmann::json& value, const std::string& key) const {
+  return document_ != nullptr ? JsonValue(*document_, value) : JsonValue(value, MemberPath(path_, key));
 }
 
-int JsonValue::Line() const {
-  return document_->LineOfValue(*value_);
+JsonValue JsonValue::Child(const nlohmann::json& value, size_t index) const {
+  return document_ != nullptr ? JsonValue(*document_, value) : JsonValue(value, path_ + "[" + std::to_string(index) + "]");
+}
+
+std::string JsonValue::Not() const {
+  return document_ != nullptr ? ", not " + document_->Shown(*value_) : "";
+}
+
+int JsonValue::LineNumber() const {
+  return document_ != nullptr ? document_->LineOfValue(*value_) : 0;
 }
 
 void JsonValue::Fail(const std::string& found, const std::string& fix) const {
-  document_->Fail(*value_, found, fix);
+  if (document_ != nullptr) document_->Fail(*value_, "", found, fix);
+  throw Refused(path_, found);
+}
+
+void JsonValue::FailAt(const std::string& key, const std::string& found) const {
+  if (document_ != nullptr) document_->Fail(*value_, key, found, "");
+  throw Refused(MemberPath(path_, key), found);
 }
 
 JsonValue JsonValue::At(const std::string& key) const {
@@ -205,44 +242,61 @@ JsonValue JsonValue::At(const std::string& key) const {
 }
 
 std::optional<JsonValue> JsonValue::Find(const std::string& key) const {
-  if (!value_->is_object()) Fail("must be an object in braces, not " + Shown());
+  std::optional<JsonValue> value = Member(key);
+  if (value && value->json().is_null()) value.reset();
+  return value;
+}
+
+std::optional<JsonValue> JsonValue::Member(const std::string& key) const {
+  if (!value_->is_object()) Fail("must be an object in braces" + Not());
   const auto found = value_->find(key);
-  if (found == value_->end() || found->is_null()) return std::nullopt;
-  return JsonValue(*document_, *found);
+  if (found == value_->end()) return std::nullopt;
+  return Child(*found, key);
 }
 
 JsonValue JsonValue::At(size_t index) const {
   if (index >= Size()) Fail("has only " + std::to_string(Size()) + " entries");
-  return {*document_, (*value_)[index]};
+  return Child((*value_)[index], index);
 }
 
 size_t JsonValue::Size() const {
-  if (!value_->is_array()) Fail("must be a list in brackets, not " + Shown());
+  if (!value_->is_array()) Fail("must be a list in brackets" + Not());
   return value_->size();
 }
 
 std::vector<std::pair<std::string, JsonValue>> JsonValue::Members() const {
-  if (!value_->is_object()) Fail("must be an object in braces, not " + Shown());
+  if (!value_->is_object()) Fail("must be an object in braces" + Not());
   std::vector<std::pair<std::string, JsonValue>> members;
   members.reserve(value_->size());
-  for (const auto& [key, member] : value_->items()) members.emplace_back(key, JsonValue(*document_, member));
+  for (const auto& [key, member] : value_->items()) members.emplace_back(key, Child(member, key));
   return members;
 }
 
-double JsonValue::Number() const {
-  if (!value_->is_number() || !(std::abs(value_->get<double>()) <= 1e9)) Fail("must be a number from -1e9 to 1e9, not " + Shown());
-  return value_->get<double>();
+double JsonValue::Number(double min, double max) const {
+  const double number = value_->is_number() ? value_->get<double>() : std::numeric_limits<double>::quiet_NaN();
+  if (!(number >= min && number <= max)) Fail("must be a number " + RangeText(min, max) + Not());
+  return number;
+}
+
+int64_t JsonValue::Integer(int64_t min, int64_t max) const {
+  // Numbers from 2^63 on are kept as unsigned ones.
+  const bool fits =
+      value_->is_number_integer() && (!value_->is_number_unsigned() || value_->get<uint64_t>() <= uint64_t{std::numeric_limits<int64_t>::max()});
+  if (!fits || value_->get<int64_t>() < min || value_->get<int64_t>() > max) {
+    Fail("must be a whole number from " + std::to_string(min) + " to " + std::to_string(max) + Not());
+  }
+  return value_->get<int64_t>();
 }
 
 double JsonValue::Positive() const {
   const double number = Number();
-  if (!(number > 0.0)) Fail("must be more than 0, not " + Shown());
+  if (!(number > 0.0)) Fail("must be more than 0" + Not());
   return number;
 }
 
 int JsonValue::Pixels() const {
   const double number = Number();
-  if (!(number >= 1.0 && number <= 1e6) || number != std::floor(number)) Fail("must be a whole number of pixels, not " + Shown());
+  if (!(number >= 1.0 && number <= 1e6) || number != std::floor(number)) Fail("must be a whole number of pixels" + Not());
   return static_cast<int>(number);
 }
 
@@ -250,19 +304,19 @@ uint64_t JsonValue::Id() const {
   if (value_->is_number_unsigned()) return value_->get<uint64_t>();
   // Some programs write the upper half of the unsigned numbers as negative ones.
   if (value_->is_number_integer()) return static_cast<uint64_t>(value_->get<int64_t>());
-  Fail("must be a whole number, not " + Shown());
+  Fail("must be a whole number" + Not());
 }
 
 bool JsonValue::Boolean() const {
-  if (!value_->is_boolean()) Fail("must be true or false, not " + Shown());
+  if (!value_->is_boolean()) Fail("must be true or false" + Not());
   return value_->get<bool>();
 }
 
-std::string JsonValue::Text() const {
-  const bool good = value_->is_string() && !value_->get_ref<const std::string&>().empty() && value_->get_ref<const std::string&>().size() <= 4096;
-  if (!good) Fail("must be a text, not " + Shown());
+std::string JsonValue::Text(size_t max_bytes) const {
+  if (!value_->is_string()) Fail("must be a text" + Not());
   const auto& text = value_->get_ref<const std::string&>();
-  if (std::any_of(text.begin(), text.end(), base::IsControl)) Fail("must be one line of text");
+  if (text.empty() || text.size() > max_bytes) Fail("must be a text of 1 to " + std::to_string(max_bytes) + " bytes" + Not());
+  if (std::any_of(text.begin(), text.end(), IsControl)) Fail("must be one line");
   return text;
 }
 
@@ -274,14 +328,9 @@ std::vector<double> JsonValue::Numbers(size_t count) const {
   return numbers;
 }
 
-Eigen::Vector3d JsonValue::Vector3() const {
-  const std::vector<double> numbers = Numbers(3);
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
 double JsonValue::NumberOr0(const std::string& key) const {
   const std::optional<JsonValue> value = Find(key);
   return value ? value->Number() : 0.0;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::base

@@ -10,14 +10,14 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/geo/enu_frame.h"
-#include "prepare/control/control_points.h"
-#include "prepare/control_fit/control_adjustment.h"
-#include "prepare/control_fit/control_block.h"
-#include "prepare/control_fit/fit_control.h"
-#include "prepare/control_fit/update_model.h"
+#include "prepare/bundle/resect.h"
+#include "prepare/control/fit/control_adjustment.h"
+#include "prepare/control/fit/control_bundle.h"
+#include "prepare/control/fit/fit_control.h"
+#include "prepare/control/fit/update_model.h"
+#include "prepare/control/reading/control_points.h"
 #include "prepare/poses/focal_check.h"
 #include "prepare/poses/loose_photos.h"
-#include "prepare/seeded/resect.h"
 
 namespace skyquilt::prepare {
 namespace {

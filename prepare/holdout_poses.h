@@ -12,8 +12,8 @@
 
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_model.h"
-#include "prepare/georeference.h"
-#include "prepare/station.h"
+#include "prepare/georeference/georeference.h"
+#include "prepare/input/station.h"
 
 namespace skyquilt::prepare {
 

@@ -6,7 +6,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/geo/enu_frame.h"
-#include "prepare/georeference.h"
+#include "prepare/georeference/georeference.h"
 
 namespace skyquilt::prepare {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "prepare/input/station.h"
 #include "prepare/models/input_model.h"
-#include "prepare/station.h"
 
 namespace skyquilt::prepare {
 

@@ -1,8 +1,8 @@
 #include "prepare/prepare_options.h"
 
 #include "core/base/errors.h"
-#include "prepare/band_choice.h"
 #include "prepare/holdout.h"
+#include "prepare/input/band_choice.h"
 #include "prepare/input/glob.h"
 
 namespace skyquilt::prepare {

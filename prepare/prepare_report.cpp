@@ -10,7 +10,7 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/survey/geo_fit_json.h"
-#include "prepare/csv_field.h"
+#include "prepare/tables/csv_field.h"
 
 namespace skyquilt::prepare {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/survey/survey.h"
-#include "prepare/georeference.h"
+#include "prepare/georeference/georeference.h"
 
 namespace skyquilt::prepare {
 

@@ -9,8 +9,8 @@
 #include "core/geo/geodetic.h"
 #include "core/geo/place_accuracy.h"
 #include "core/geo/transform.h"
-#include "prepare/georeference.h"
-#include "prepare/station.h"
+#include "prepare/georeference/georeference.h"
+#include "prepare/input/station.h"
 #include "simulate/simulate_options.h"
 
 namespace skyquilt::bench {

@@ -14,7 +14,7 @@
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_model.h"
 #include "prepare/input/list_files.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/colmap_run.h"
 #include "simulate/simulate.h"
 #include "simulate/world.h"

@@ -8,8 +8,8 @@
 #include "core/base/log.h"
 #include "core/checkpoint/archive.h"
 #include "core/scene/field_file.h"
-#include "prepare/input/masks.h"
-#include "prepare/photo_positions.h"
+#include "prepare/georeference/tags/photo_positions.h"
+#include "prepare/input/masks/masks.h"
 #include "tour/export/staged_folder.h"
 
 namespace skyquilt::coordinator {

@@ -7,7 +7,7 @@
 
 #include "core/geo/geodetic.h"
 #include "core/survey/survey.h"
-#include "prepare/input/masks.h"
+#include "prepare/input/masks/masks.h"
 
 namespace skyquilt::prepare {
 

@@ -9,8 +9,8 @@
 
 #include "core/base/file.h"
 #include "core/base/text.h"
-#include "prepare/csv_field.h"
 #include "prepare/input/file_names.h"
+#include "prepare/tables/csv_field.h"
 
 namespace skyquilt::prepare {
 namespace {

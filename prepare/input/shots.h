@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 
 namespace skyquilt::prepare {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/feature_store.h"
 #include "prepare/poses/pairs.h"
 #include "prepare/poses/pose_options.h"

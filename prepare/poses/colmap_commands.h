@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/colmap_step.h"
 #include "prepare/poses/pose_options.h"
 

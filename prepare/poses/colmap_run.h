@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/colmap_step.h"
 #include "prepare/poses/pose_options.h"
 #include "prepare/poses/pose_task.h"

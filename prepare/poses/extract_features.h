@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/colmap_commands.h"
 #include "prepare/poses/pose_options.h"
 #include "prepare/poses/pose_task.h"

@@ -12,7 +12,7 @@
 #include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/exif.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 
 namespace skyquilt::prepare {
 

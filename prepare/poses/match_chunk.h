@@ -12,7 +12,7 @@
 
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_database.h"
-#include "prepare/matching/feature_matcher.h"
+#include "prepare/poses/feature_matcher.h"
 #include "prepare/poses/feature_store.h"
 #include "prepare/poses/pairs.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 
 namespace skyquilt::prepare {
 

@@ -14,8 +14,8 @@
 
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_database.h"
-#include "prepare/matching/feature_matcher.h"
 #include "prepare/poses/colmap_step.h"
+#include "prepare/poses/feature_matcher.h"
 #include "prepare/poses/feature_store.h"
 
 namespace skyquilt::prepare {

@@ -8,11 +8,11 @@
 #include "core/base/log.h"
 #include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
+#include "prepare/input/tag_accuracy.h"
 #include "prepare/poses/focal_check.h"
-#include "prepare/seeded/focal_by_height.h"
-#include "prepare/seeded/point_colors.h"
-#include "prepare/seeded/seed_poses.h"
-#include "prepare/tag_accuracy.h"
+#include "prepare/poses/seed/focal_by_height.h"
+#include "prepare/poses/seed/point_colors.h"
+#include "prepare/poses/seed/seed_poses.h"
 
 namespace skyquilt::prepare {
 namespace {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/colmap_commands.h"
 #include "prepare/poses/colmap_step.h"
-#include "prepare/seeded/seed_input.h"
+#include "prepare/poses/seed/seed_input.h"
 
 namespace skyquilt::prepare {
 

@@ -2,10 +2,10 @@
 #include <iterator>
 #include <string_view>
 
-#include "prepare/control/control_checks.h"
-#include "prepare/control/read_control.h"
+#include "prepare/control/reading/control_checks.h"
+#include "prepare/control/reading/read_control.h"
 #include "tests/fuzz/fuzz_target.h"
-#include "tests/prepare/control/made_control.h"
+#include "tests/prepare/control/reading/made_control.h"
 
 namespace skyquilt::fuzz {
 namespace {

@@ -1,6 +1,6 @@
 // Tables of photo positions: OpenDroneMap's geo.txt, others like it, and DJI's .MRK.
-#include "prepare/geo_table.h"
-#include "prepare/photo_positions.h"
+#include "prepare/georeference/tags/geo_table.h"
+#include "prepare/georeference/tags/photo_positions.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace skyquilt::fuzz {

@@ -1,5 +1,5 @@
 // The tables that control points, marks and positions of photos are read from, the meaning of their columns, and names of photos.
-#include "prepare/control/control_columns.h"
+#include "prepare/control/reading/control_columns.h"
 #include "prepare/models/photo_names.h"
 #include "prepare/tables/text_table.h"
 #include "tests/fuzz/fuzz_target.h"

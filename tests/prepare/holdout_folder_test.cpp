@@ -12,7 +12,7 @@
 #include "core/image/image.h"
 #include "core/survey/exif.h"
 #include "prepare/prepare.h"
-#include "tests/prepare/control_fit/made_control.h"
+#include "tests/prepare/control/fit/made_control.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 

@@ -10,8 +10,8 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/linear/linear.h"
-#include "prepare/seeded/resect.h"
-#include "tests/prepare/control_fit/made_control.h"
+#include "prepare/bundle/resect.h"
+#include "tests/prepare/control/fit/made_control.h"
 
 namespace skyquilt::prepare {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
-#include "prepare/photo_positions.h"
+#include "prepare/georeference/tags/photo_positions.h"
 #include "prepare/prepare.h"
 #include "tests/prepare/models/made_models.h"
 #include "tests/prepare/synthetic_flight.h"

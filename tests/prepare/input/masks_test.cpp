@@ -1,4 +1,4 @@
-#include "prepare/input/masks.h"
+#include "prepare/input/masks/masks.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -10,8 +10,8 @@
 #include "core/base/file.h"
 #include "core/base/random.h"
 #include "prepare/input/input_folder.h"
-#include "prepare/input/mask_files.h"
-#include "prepare/input/mask_index.h"
+#include "prepare/input/masks/mask_files.h"
+#include "prepare/input/masks/mask_index.h"
 #include "tests/prepare/input/made_folder.h"
 #include "tests/support/error_of.h"
 

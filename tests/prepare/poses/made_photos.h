@@ -10,7 +10,7 @@
 
 #include "core/base/random.h"
 #include "core/geo/enu_frame.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 
 namespace skyquilt::test {
 

@@ -8,7 +8,7 @@
 #include "core/base/log.h"
 #include "core/survey/colmap_model.h"
 #include "tests/prepare/poses/fake_colmap.h"
-#include "tests/prepare/seeded/made_survey.h"
+#include "tests/prepare/poses/seed/made_survey.h"
 #include "tests/support/made_database.h"
 
 namespace skyquilt::prepare {

@@ -25,22 +25,22 @@ namespace {
 // Photos that look straight down hardly determine the focal length. What the search for poses found, by tags too, must not be lost here.
 constexpr double kFocalSigma = 0.01;  // relative
 
-ControlBlock BlockWithoutControl(survey::ColmapModel& model, const survey::ColmapObservations& observations) {
+ControlBundle BundleWithoutControl(survey::ColmapModel& model, const survey::ColmapObservations& observations) {
   const std::vector<Station> no_stations;
   const std::vector<size_t> no_images;
   const ControlPoints no_points;
-  return MakeControlBlock(
+  return MakeControlBundle(
       {.model = model, .observations = observations, .stations = no_stations, .image_of_station = no_images, .control = no_points});
 }
 
 // Where photos are holds the frame of an adjustment without tags, so loosely (the size of the survey) that it bends nothing.
-void HoldFrame(Block& block) {
+void HoldFrame(BundleProblem& bundle) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const BlockPhoto& photo : block.photos) middle += photo.centre / static_cast<double>(block.photos.size());
+  for (const BundlePhoto& photo : bundle.photos) middle += photo.centre / static_cast<double>(bundle.photos.size());
   double size = 0.0;
-  for (const BlockPhoto& photo : block.photos) size = std::max(size, (photo.centre - middle).norm());
+  for (const BundlePhoto& photo : bundle.photos) size = std::max(size, (photo.centre - middle).norm());
   if (!(size > 0.0)) return;
-  for (BlockPhoto& photo : block.photos) {
+  for (BundlePhoto& photo : bundle.photos) {
     photo.gps = photo.centre;
     photo.gps_sigma = Eigen::Vector3d::Constant(size);
   }
@@ -55,10 +55,10 @@ size_t CountNewlyLoose(const survey::ColmapModel& before, const survey::ColmapMo
 }
 
 // Why the model cannot be adjusted without the others; empty: it can.
-std::string WhyNot(const survey::ColmapModel& given, const survey::ColmapModel& rest, const ControlBlock& made) {
-  if (!made.known_lenses) return "the camera model has coefficients that the adjustment does not know";
-  if (made.n_ties < kLeastTies) {
-    return fmt::format("the model has {} points with observations in two of the other photos, {} are needed", made.n_ties, kLeastTies);
+std::string WhyNot(const survey::ColmapModel& given, const survey::ColmapModel& rest, const ControlBundle& tied) {
+  if (!tied.known_lenses) return "the camera model has coefficients that the adjustment does not know";
+  if (tied.n_ties < kLeastTies) {
+    return fmt::format("the model has {} points with observations in two of the other photos, {} are needed", tied.n_ties, kLeastTies);
   }
   const size_t loose = CountNewlyLoose(given, rest);
   return loose > 0 ? fmt::format("without them, {} of the other photos have nearly no points in common with the rest", loose) : "";
@@ -93,30 +93,30 @@ std::optional<WithheldPhotos> WithholdPhotos(const std::unordered_set<uint32_t>&
   const auto is_withheld = [&](const survey::ColmapImage& image) { return withheld.contains(image.id); };
   survey::ColmapModel rest = model;
   RemovePhotos(is_withheld, rest);
-  ControlBlock made = BlockWithoutControl(rest, observations);
-  *reason = WhyNot(model, rest, made);
+  ControlBundle tied = BundleWithoutControl(rest, observations);
+  *reason = WhyNot(model, rest, tied);
   if (!reason->empty()) return std::nullopt;
-  HoldFrame(made.block);
-  for (BlockLens& lens : made.block.lenses) lens.focal_sigma = kFocalSigma;
-  const std::vector<BlockPhoto> before = made.block.photos;
+  HoldFrame(tied.bundle);
+  for (BundleLens& lens : tied.bundle.lenses) lens.focal_sigma = kFocalSigma;
+  const std::vector<BundlePhoto> before = tied.bundle.photos;
   base::Progress progress("adjust without held-out photos", kUsualIterations, "iterations");
-  const bool adjusted = AdjustToFeatures(made, threads, [&] { progress.Advance(); });
+  const bool adjusted = AdjustToFeatures(tied, threads, [&] { progress.Advance(); });
   progress.Finish();
   if (!adjusted) {
     *reason = "the adjustment without them found no solution";
     return std::nullopt;
   }
-  UpdateModel(made, {}, before, true, rest);
+  UpdateModel(tied, {}, before, true, rest);
   if (const auto far = FindFarFocal(rest, model.cameras)) {
     *reason = fmt::format("without them, the adjustment makes a focal length of {:.0f} px out of {:.0f} px", far->found_px, far->tagged_px);
     return std::nullopt;
   }
   std::vector<survey::ColmapPoint> placed;
-  for (size_t t = 0; t < made.n_ties; ++t) {
-    if (made.block.has_point[t] != 0) placed.push_back(std::move(rest.points[made.point_of_tie[t]]));
+  for (size_t t = 0; t < tied.n_ties; ++t) {
+    if (tied.bundle.has_point[t] != 0) placed.push_back(std::move(rest.points[tied.point_of_tie[t]]));
   }
   rest.points = std::move(placed);
-  WithheldPhotos photos{.images = {}, .observations = std::move(observations), .tie_sigma = made.tie_sigma};
+  WithheldPhotos photos{.images = {}, .observations = std::move(observations), .tie_sigma = tied.tie_sigma};
   std::copy_if(model.images.begin(), model.images.end(), std::back_inserter(photos.images), is_withheld);
   base::LogInfo(
       "{} held-out photos taken out of the model, {} others adjusted to their own features (sigma {:.2f} px at 1600 px); {} of {} points stay",
@@ -130,27 +130,27 @@ std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::Co
   constexpr double kLeastThreshold = 1.5;  // pixels of a photo of 1600 pixels width
   const size_t first = model.images.size();
   model.images.insert(model.images.end(), photos.images.begin(), photos.images.end());
-  ControlBlock made = BlockWithoutControl(model, photos.observations);
-  made.SetAccuracy(photos.tie_sigma, made.mark_sigma_px);
+  ControlBundle tied = BundleWithoutControl(model, photos.observations);
+  tied.SetAccuracy(photos.tie_sigma, tied.mark_sigma_px);
   const double threshold = std::max(kTieThreshold, kLeastThreshold / photos.tie_sigma);
-  Block& block = made.block;
-  for (size_t i = first; i < block.photos.size(); ++i) block.photos[i].placed = false;
-  ResectPhotos(block, threshold);
+  BundleProblem& bundle = tied.bundle;
+  for (size_t i = first; i < bundle.photos.size(); ++i) bundle.photos[i].placed = false;
+  ResectPhotos(bundle, threshold);
 
-  const std::vector<std::vector<uint32_t>> entries = EntriesOfPhotos(block);
-  const std::vector<uint32_t> track_of = TrackOfEntries(block.tracks);
+  const std::vector<std::vector<uint32_t>> entries = EntriesOfPhotos(bundle);
+  const std::vector<uint32_t> track_of = TrackOfEntries(bundle.tracks);
   std::vector<survey::ColmapImage> resected;
   std::vector<std::string> lost;
-  for (size_t i = first; i < block.photos.size(); ++i) {
+  for (size_t i = first; i < bundle.photos.size(); ++i) {
     survey::ColmapImage& image = model.images[i];
-    const BlockPhoto& photo = block.photos[i];
-    if (!photo.placed || RefineByPoints(block, static_cast<uint32_t>(i), entries[i], track_of, threshold) < kLeastObservations) {
+    const BundlePhoto& photo = bundle.photos[i];
+    if (!photo.placed || RefineByPoints(bundle, static_cast<uint32_t>(i), entries[i], track_of, threshold) < kLeastObservations) {
       lost.push_back(image.name);
       continue;
     }
     image.cam_from_world = {photo.cam_from_enu, -(photo.cam_from_enu * photo.centre)};
     for (const uint32_t e : entries[i]) {
-      if (block.agrees[e] != 0) model.points[made.point_of_tie[track_of[e]]].image_ids.push_back(image.id);
+      if (bundle.agrees[e] != 0) model.points[tied.point_of_tie[track_of[e]]].image_ids.push_back(image.id);
     }
     resected.push_back(std::move(image));
   }

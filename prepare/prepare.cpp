@@ -344,7 +344,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   NoteReadPhotos(photos, files);
   WriteInputTable(files, input.out_folder / kInputTable);
   // Faults of these files are told before the long search for poses.
-  const ControlPoints control_points = ReadControlPoints(options, photos.usable);
+  const ControlPoints control_points = ReadControlPoints(ControlFilesOf(options), photos.usable);
   base::ThrowIfCancelled();
 
   InputModel input_model;
@@ -381,18 +381,19 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   std::vector<Eigen::Vector3d> points;
   points.reserve(model.points.size());
   for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
+  const PlaceOptions place_options = PlaceOptionsOf(options);
   Georeference georeference =
-      folders.exact_origin ? KeepExactFrame(stations, *folders.exact_origin, options) : PlaceOnEarth(stations, points, options);
+      folders.exact_origin ? KeepExactFrame(stations, *folders.exact_origin, place_options) : PlaceOnEarth(stations, points, place_options);
   const std::vector<size_t> image_of_station = ImagesOf(registered, model);
   // Control points say more of the shape than tags; check points are compared with the final one.
   const bool any_control = std::any_of(control_points.points.begin(), control_points.points.end(), [](const ControlPoint& p) { return !p.check; });
   if (has_observations && !any_control) {
-    ShapeByTags({options, image_of_station, folders.model, TaggedFocals(registered, photos.usable)}, input_model.sfm, stations, georeference,
+    ShapeByTags({place_options, image_of_station, folders.model, TaggedFocals(registered, photos.usable)}, input_model.sfm, stations, georeference,
                 threads);
   }
   survey::ControlFit control =
-      PlaceByControl({options, control_points, image_of_station, folders.model, has_observations, folders.exact_origin.has_value()}, input_model.sfm,
-                     stations, georeference, threads);
+      PlaceByControl({place_options, control_points, image_of_station, folders.model, has_observations, folders.exact_origin.has_value()},
+                     input_model.sfm, stations, georeference, threads);
   const std::vector<survey::PhotoTags> placing_tags = PlacingTags(registered, photos.usable);
   if (withheld) registered = PutBack(*withheld, held_out, file_of_image, photos.usable, input_model.sfm, georeference);
 

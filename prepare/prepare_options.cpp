@@ -87,4 +87,21 @@ PoseOptions PoseOptionsOf(const PrepareOptions& options) {
           .seed = options.seed};
 }
 
+ControlFiles ControlFilesOf(const PrepareOptions& options) {
+  return {.points = options.gcp,
+          .marks = options.gcp_marks,
+          .crs = options.gcp_crs,
+          .columns = options.gcp_columns,
+          .heights = options.gcp_heights,
+          .check_points = options.check_points};
+}
+
+PlaceOptions PlaceOptionsOf(const PrepareOptions& options) {
+  return {.ransac_threshold_m = options.ransac_threshold_m,
+          .flight_gap_s = options.flight_gap_s,
+          .flight_offsets = options.flight_offsets,
+          .tag_lag = options.tag_lag,
+          .seed = options.seed};
+}
+
 }  // namespace skyquilt::prepare

@@ -104,7 +104,7 @@ simulate::SimulateOptions RandomFaults(uint64_t seed) {
   return options;
 }
 
-PlaceErrors FindPlace(const FaultSurvey& survey, const prepare::PrepareOptions& options) {
+PlaceErrors FindPlace(const FaultSurvey& survey, const prepare::PlaceOptions& options) {
   const prepare::Georeference found = prepare::PlaceOnEarth(survey.stations, survey.points, options);
   PlaceErrors errors{.georeferenced = found.ok, .sigma = found.fit.accuracy, .lag_s = found.fit.tag_lag_s};
   for (const survey::Problem& problem : found.problems) errors.problems.push_back(problem.code);

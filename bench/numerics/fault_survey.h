@@ -36,6 +36,6 @@ struct PlaceErrors {
   double lag_s = 0.0;
   std::vector<std::string> problems = {};  // codes
 };
-PlaceErrors FindPlace(const FaultSurvey& survey, const prepare::PrepareOptions& options = {});
+PlaceErrors FindPlace(const FaultSurvey& survey, const prepare::PlaceOptions& options = {});
 
 }  // namespace skyquilt::bench

@@ -30,29 +30,29 @@ class Watch : public ceres::IterationCallback {
 
 // Photos that look straight down at level ground hardly tell the focal length from the height: there the tagged one, which is
 // right to a few percent, must keep the height from being wrong by a quarter. Other photos outweigh it by far.
-Lens LensSigma(const BlockLens& lens) {
+Lens LensSigma(const BundleLens& lens) {
   const double focal = lens.initial[0] * lens.focal_sigma;
   const double centre = 0.02 * lens.camera.width;
   return {focal, 0.01, centre, centre, 0.3, 0.3, 0.01, 0.01};
 }
 
-std::vector<int> HeldNumbersOf(const BlockLens& lens) {
+std::vector<int> HeldNumbersOf(const BundleLens& lens) {
   std::vector<int> held = HeldNumbers(lens.camera.model);
   if (lens.hold_focal) held.insert(held.begin(), 0);
   return held;
 }
 
-bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration,
+bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration,
                   Eigen::Vector3d* shift) {
-  std::vector<PoseNumbers> poses(block.photos.size());
+  std::vector<PoseNumbers> poses(bundle.photos.size());
   std::vector<Lens> lenses;
   std::vector<Eigen::Vector3d> points;
   Eigen::Vector3d new_shift = shift != nullptr ? *shift : Eigen::Vector3d::Zero();
   points.reserve(tracks.size());
-  for (const BlockLens& lens : block.lenses) lenses.push_back(lens.numbers);
+  for (const BundleLens& lens : bundle.lenses) lenses.push_back(lens.numbers);
   for (size_t i = 0; i < poses.size(); ++i) {
-    Eigen::Map<Eigen::Vector4d>(poses[i].data()) = block.photos[i].cam_from_enu.coeffs();
-    Eigen::Map<Eigen::Vector3d>(poses[i].data() + 4) = block.photos[i].centre;
+    Eigen::Map<Eigen::Vector4d>(poses[i].data()) = bundle.photos[i].cam_from_enu.coeffs();
+    Eigen::Map<Eigen::Vector3d>(poses[i].data() + 4) = bundle.photos[i].centre;
   }
 
   // Must outlive the problem, which does not own them.
@@ -72,23 +72,23 @@ bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleSt
   problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   std::vector<std::unique_ptr<ceres::SubsetManifold>> lens_manifolds;
   ceres::Problem problem(problem_options);
-  // Points are eliminated first. Poses and lenses have groups of their own, as blocks of one group are ordered by their addresses.
+  // Points are eliminated first. Poses and lenses have groups of their own, as parameter blocks of one group are ordered by their addresses.
   constexpr int kPointGroup = 0, kPoseGroup = 1, kLensGroup = 2, kShiftGroup = 3;
   const auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   ceres::Solver::Options options;
   options.linear_solver_ordering = ordering;
 
-  std::vector<char> sees(block.photos.size(), 0), used(block.lenses.size(), 0);
+  std::vector<char> sees(bundle.photos.size(), 0), used(bundle.lenses.size(), 0);
   for (const uint32_t t : tracks) {
-    if (block.has_point[t] == 0) continue;
-    points.push_back(block.point[t]);
+    if (bundle.has_point[t] == 0) continue;
+    points.push_back(bundle.point[t]);
     double* point = points.back().data();
-    for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) {
-      const uint32_t photo = block.tracks.entries[e].photo;
-      if (block.agrees[e] == 0 || !block.photos[photo].placed) continue;
-      const auto lens = static_cast<size_t>(block.photos[photo].lens);
-      const double sigma_px = block.lenses[lens].unit_px * (block.sigma.empty() ? 1.0 : block.sigma[e]);
-      problem.AddResidualBlock(new ReprojectionCost(block.pixel[e], sigma_px), loss.get(), poses[photo].data(), lenses[lens].data(), point);
+    for (uint32_t e = bundle.tracks.first[t]; e < bundle.tracks.first[t + 1]; ++e) {
+      const uint32_t photo = bundle.tracks.entries[e].photo;
+      if (bundle.agrees[e] == 0 || !bundle.photos[photo].placed) continue;
+      const auto lens = static_cast<size_t>(bundle.photos[photo].lens);
+      const double sigma_px = bundle.lenses[lens].unit_px * (bundle.sigma.empty() ? 1.0 : bundle.sigma[e]);
+      problem.AddResidualBlock(new ReprojectionCost(bundle.pixel[e], sigma_px), loss.get(), poses[photo].data(), lenses[lens].data(), point);
       sees[photo] = 1;
       used[lens] = 1;
     }
@@ -100,7 +100,7 @@ bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleSt
   }
   for (size_t i = 0; i < poses.size(); ++i) {
     if (sees[i] == 0) continue;
-    const BlockPhoto& photo = block.photos[i];
+    const BundlePhoto& photo = bundle.photos[i];
     problem.SetManifold(poses[i].data(), &pose_manifold);
     ordering->AddElementToGroup(poses[i].data(), kPoseGroup);
     if (photo.gps && shift != nullptr) {
@@ -121,9 +121,9 @@ bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleSt
       problem.SetParameterBlockConstant(lenses[i].data());
       continue;
     }
-    lens_manifolds.push_back(std::make_unique<ceres::SubsetManifold>(8, HeldNumbersOf(block.lenses[i])));
+    lens_manifolds.push_back(std::make_unique<ceres::SubsetManifold>(8, HeldNumbersOf(bundle.lenses[i])));
     problem.SetManifold(lenses[i].data(), lens_manifolds.back().get());
-    problem.AddResidualBlock(new LensCost(block.lenses[i].initial, LensSigma(block.lenses[i])), nullptr, lenses[i].data());
+    problem.AddResidualBlock(new LensCost(bundle.lenses[i].initial, LensSigma(bundle.lenses[i])), nullptr, lenses[i].data());
   }
   if (problem.NumResidualBlocks() == 0) return false;
 
@@ -146,14 +146,14 @@ bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleSt
 
   for (size_t i = 0; i < poses.size(); ++i) {
     if (sees[i] == 0) continue;
-    block.photos[i].cam_from_enu = Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(poses[i].data()));
-    block.photos[i].centre = Eigen::Map<const Eigen::Vector3d>(poses[i].data() + 4);
+    bundle.photos[i].cam_from_enu = Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(poses[i].data()));
+    bundle.photos[i].centre = Eigen::Map<const Eigen::Vector3d>(poses[i].data() + 4);
   }
-  for (size_t i = 0; i < lenses.size(); ++i) block.lenses[i].numbers = lenses[i];
+  for (size_t i = 0; i < lenses.size(); ++i) bundle.lenses[i].numbers = lenses[i];
   if (shift != nullptr) *shift = new_shift;
   size_t k = 0;
   for (const uint32_t t : tracks) {
-    if (block.has_point[t] != 0) block.point[t] = points[k++];
+    if (bundle.has_point[t] != 0) bundle.point[t] = points[k++];
   }
   return true;
 }

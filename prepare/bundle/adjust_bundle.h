@@ -1,4 +1,4 @@
-// Bundle adjustment of a block (Triggs et al., Bundle Adjustment - A Modern Synthesis, 2000) with Ceres: poses, lenses and points at once.
+// Bundle adjustment (Triggs et al., Bundle Adjustment - A Modern Synthesis, 2000) with Ceres: poses, lenses and points at once.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +24,16 @@ struct BundleStage {
 };
 
 // What a lens may be without having been measured, one standard deviation of each number from its initial value.
-Lens LensSigma(const BlockLens& lens);
+Lens LensSigma(const BundleLens& lens);
 // Numbers of a lens that stay what they are.
-std::vector<int> HeldNumbersOf(const BlockLens& lens);
+std::vector<int> HeldNumbersOf(const BundleLens& lens);
 // Positions with an error beyond this many sigmas lose almost all weight (Cauchy).
 constexpr double kTagLoss = 2.0;
 
 // Adjusts all placed photos and the points of `tracks` to the entries that agree. Uses one thread: sums in the order of another number of threads
 // would give other bits. Throws base::Interrupted. False when no solution is found; then nothing has changed. `on_iteration` is called after each.
 // `shift`: of the positions, with its value to begin with; null: none.
-bool AdjustBundle(Block& block, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration,
+bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration,
                   Eigen::Vector3d* shift = nullptr);
 
 }  // namespace skyquilt::prepare

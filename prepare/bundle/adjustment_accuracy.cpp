@@ -10,7 +10,6 @@
 #include "core/linear/linear.h"
 #include "core/linear/sparse.h"
 #include "prepare/bundle/entry_term.h"
-#include "prepare/control/fit/control_similarity.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -58,7 +57,7 @@ struct PointTerms {
 }  // namespace
 
 struct AdjustmentAccuracy::Impl {
-  const Block& block;
+  const BundleProblem& bundle;
   std::vector<uint32_t> tracks;
   BundleStage stage;
   std::vector<int> group_of_photo, group_of_lens, first;  // first: unknown of each group, and their number
@@ -69,7 +68,7 @@ struct AdjustmentAccuracy::Impl {
   std::optional<linear::SparseFactors> factors;
   bool ok = false;
 
-  explicit Impl(const Block& of) : block(of) {}
+  explicit Impl(const BundleProblem& of) : bundle(of) {}
 
   void AddBlock(int row, int col, const SmallMatrix& value) {
     const bool lower = row >= col;
@@ -99,11 +98,11 @@ struct AdjustmentAccuracy::Impl {
   // `direct`: adds what photos and lenses get without the point, too.
   PointTerms Collect(uint32_t track, bool direct) {
     PointTerms terms;
-    for (uint32_t e = block.tracks.first[track]; e < block.tracks.first[track + 1]; ++e) {
-      const uint32_t photo = block.tracks.entries[e].photo;
-      if (!Counts(block, e) || group_of_photo[photo] < 0) continue;
-      const int lens = block.photos[photo].lens;
-      const EntryTerm term = TermOf(block, e, block.point[track]);
+    for (uint32_t e = bundle.tracks.first[track]; e < bundle.tracks.first[track + 1]; ++e) {
+      const uint32_t photo = bundle.tracks.entries[e].photo;
+      if (!Counts(bundle, e) || group_of_photo[photo] < 0) continue;
+      const int lens = bundle.photos[photo].lens;
+      const EntryTerm term = TermOf(bundle, e, bundle.point[track]);
       const double weight = WeightOf(term);
       const SmallMatrix by_pose = term.by_pose.leftCols<6>();
       const int pose_group = group_of_photo[photo], lens_group = group_of_lens[static_cast<size_t>(lens)];
@@ -122,18 +121,18 @@ struct AdjustmentAccuracy::Impl {
   }
 
   void AddKnown(uint32_t track, const KnownPoint& known, PointTerms* terms) const {
-    const double weight = KnownWeight(known, block.point[track], stage.known_loss);
+    const double weight = KnownWeight(known, bundle.point[track], stage.known_loss);
     terms->information += weight * known.sigma.cwiseAbs2().cwiseInverse().asDiagonal().toDenseMatrix();
   }
 
   void NumberUnknowns(bool has_shift) {
-    std::vector<char> sees(block.photos.size(), 0), used(block.lenses.size(), 0);
+    std::vector<char> sees(bundle.photos.size(), 0), used(bundle.lenses.size(), 0);
     for (const uint32_t t : tracks) {
-      if (block.has_point[t] == 0) continue;
-      for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) {
-        if (!Counts(block, e)) continue;
-        sees[block.tracks.entries[e].photo] = 1;
-        used[static_cast<size_t>(block.photos[block.tracks.entries[e].photo].lens)] = 1;
+      if (bundle.has_point[t] == 0) continue;
+      for (uint32_t e = bundle.tracks.first[t]; e < bundle.tracks.first[t + 1]; ++e) {
+        if (!Counts(bundle, e)) continue;
+        sees[bundle.tracks.entries[e].photo] = 1;
+        used[static_cast<size_t>(bundle.photos[bundle.tracks.entries[e].photo].lens)] = 1;
       }
     }
     first = {0};
@@ -143,7 +142,7 @@ struct AdjustmentAccuracy::Impl {
     };
     for (size_t i = 0; i < sees.size(); ++i) group_of_photo.push_back(sees[i] != 0 ? add(6) : -1);
     for (size_t i = 0; i < used.size(); ++i) {
-      const std::vector<int> held = HeldNumbersOf(block.lenses[i]);
+      const std::vector<int> held = HeldNumbersOf(bundle.lenses[i]);
       std::vector<int> free;
       for (int k = 0; k < 8; ++k) {
         if (std::find(held.begin(), held.end(), k) == held.end()) free.push_back(k);
@@ -151,13 +150,13 @@ struct AdjustmentAccuracy::Impl {
       group_of_lens.push_back(used[i] != 0 && stage.free_lens ? add(static_cast<int>(free.size())) : -1);
       free_of_lens.push_back(std::move(free));
     }
-    const bool tagged = std::any_of(block.photos.begin(), block.photos.end(), [](const BlockPhoto& photo) { return photo.gps.has_value(); });
+    const bool tagged = std::any_of(bundle.photos.begin(), bundle.photos.end(), [](const BundlePhoto& photo) { return photo.gps.has_value(); });
     if (has_shift && tagged) shift_group = add(3);
   }
 
   void AddTags(const Vector3d& shift) {
-    for (size_t i = 0; i < block.photos.size(); ++i) {
-      const BlockPhoto& photo = block.photos[i];
+    for (size_t i = 0; i < bundle.photos.size(); ++i) {
+      const BundlePhoto& photo = bundle.photos[i];
       if (!photo.gps || group_of_photo[i] < 0) continue;
       const Vector3d inverse = (stage.gps_factor * photo.gps_sigma).cwiseInverse();
       const double weight = CauchyWeight((photo.centre - *photo.gps - shift).cwiseProduct(inverse).norm(), kTagLoss);
@@ -174,9 +173,9 @@ struct AdjustmentAccuracy::Impl {
   }
 
   void AddLenses() {
-    for (size_t i = 0; i < block.lenses.size(); ++i) {
+    for (size_t i = 0; i < bundle.lenses.size(); ++i) {
       if (group_of_lens[i] < 0) continue;
-      const Lens sigma = LensSigma(block.lenses[i]);
+      const Lens sigma = LensSigma(bundle.lenses[i]);
       SmallMatrix information =
           SmallMatrix::Zero(static_cast<Eigen::Index>(free_of_lens[i].size()), static_cast<Eigen::Index>(free_of_lens[i].size()));
       for (Eigen::Index k = 0; k < information.rows(); ++k) {
@@ -221,8 +220,8 @@ struct AdjustmentAccuracy::Impl {
   }
 };
 
-AdjustmentAccuracy::AdjustmentAccuracy(const Block& block, std::span<const uint32_t> tracks, const BundleStage& stage, const Vector3d* shift)
-    : impl_(std::make_unique<Impl>(block)) {
+AdjustmentAccuracy::AdjustmentAccuracy(const BundleProblem& bundle, std::span<const uint32_t> tracks, const BundleStage& stage, const Vector3d* shift)
+    : impl_(std::make_unique<Impl>(bundle)) {
   Impl& impl = *impl_;
   impl.tracks.assign(tracks.begin(), tracks.end());
   impl.stage = stage;
@@ -230,7 +229,7 @@ AdjustmentAccuracy::AdjustmentAccuracy(const Block& block, std::span<const uint3
   std::unordered_map<uint32_t, const KnownPoint*> known;
   for (const KnownPoint& point : stage.known) known.emplace(point.track, &point);
   for (const uint32_t t : tracks) {
-    if (block.has_point[t] == 0) continue;
+    if (bundle.has_point[t] == 0) continue;
     PointTerms terms = impl.Collect(t, true);
     if (const auto found = known.find(t); found != known.end()) impl.AddKnown(t, *found->second, &terms);
     const Matrix3d inverse = linear::Inverse(terms.information);
@@ -255,7 +254,7 @@ bool AdjustmentAccuracy::ok() const {
 }
 
 std::optional<Matrix3d> AdjustmentAccuracy::OfPoint(uint32_t track, const KnownPoint* known) const {
-  if (!impl_->ok || impl_->block.has_point[track] == 0) return std::nullopt;
+  if (!impl_->ok || impl_->bundle.has_point[track] == 0) return std::nullopt;
   PointTerms terms = impl_->Collect(track, false);
   if (terms.entries < 2) return std::nullopt;
   if (known != nullptr) impl_->AddKnown(track, *known, &terms);
@@ -269,22 +268,22 @@ std::optional<Matrix3d> AdjustmentAccuracy::OfPoint(uint32_t track, const KnownP
 
 geo::PlaceAccuracy AdjustmentAccuracy::OfPlace() const {
   if (!impl_->ok) return {};
-  const Block& block = impl_->block;
+  const BundleProblem& bundle = impl_->bundle;
   constexpr size_t kMaxPoints = 300;
   std::vector<uint32_t> chosen;
   const size_t step = std::max<size_t>(1, impl_->tracks.size() / kMaxPoints);
   for (size_t i = 0; i < impl_->tracks.size(); i += step) {
-    if (block.has_point[impl_->tracks[i]] != 0) chosen.push_back(impl_->tracks[i]);
+    if (bundle.has_point[impl_->tracks[i]] != 0) chosen.push_back(impl_->tracks[i]);
   }
   Vector3d middle = Vector3d::Zero();
-  for (const uint32_t t : chosen) middle += block.point[t] / static_cast<double>(chosen.size());
+  for (const uint32_t t : chosen) middle += bundle.point[t] / static_cast<double>(chosen.size());
   Eigen::Matrix<double, 7, 7> normal = Eigen::Matrix<double, 7, 7>::Zero();
   MatrixXd motion = MatrixXd::Zero(impl_->first.back(), 7);
   for (const uint32_t t : chosen) {
     const PointTerms terms = impl_->Collect(t, false);
     const Matrix3d inverse = linear::Inverse(terms.information);
     if (!inverse.allFinite()) continue;
-    const Eigen::Matrix<double, 3, 7> jacobian = SimilarityJacobian(block.point[t] - middle);
+    const Eigen::Matrix<double, 3, 7> jacobian = SimilarityJacobian(bundle.point[t] - middle);
     normal += jacobian.transpose() * jacobian;
     for (const auto& [group, product] : terms.products) {
       motion.middleRows(impl_->first[static_cast<size_t>(group)], product.rows()) += Times(Times(product, inverse), jacobian);
@@ -303,6 +302,15 @@ geo::PlaceAccuracy AdjustmentAccuracy::OfPlace() const {
 
 double KnownWeight(const KnownPoint& known, const Vector3d& x_in_enu, double loss) {
   return HuberWeight((x_in_enu - known.place).cwiseQuotient(known.sigma).norm(), loss);
+}
+
+Eigen::Matrix<double, 3, 7> SimilarityJacobian(const Vector3d& from_middle) {
+  Eigen::Matrix<double, 3, 7> jacobian;
+  const Vector3d& d = from_middle;
+  jacobian.leftCols<3>().setIdentity();
+  jacobian.middleCols<3>(3) << 0.0, d.z(), -d.y(), -d.z(), 0.0, d.x(), d.y(), -d.x(), 0.0;
+  jacobian.col(6) = d;
+  return jacobian;
 }
 
 }  // namespace skyquilt::prepare

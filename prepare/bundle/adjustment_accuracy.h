@@ -18,8 +18,8 @@ namespace skyquilt::prepare {
 class AdjustmentAccuracy {
  public:
   // After AdjustBundle with the same arguments. Errors of features are taken to have the standard deviation of one unit, those of marks their sigma.
-  // Keeps a reference to the block.
-  AdjustmentAccuracy(const Block& block, std::span<const uint32_t> tracks, const BundleStage& stage, const Eigen::Vector3d* shift);
+  // Keeps a reference to the bundle.
+  AdjustmentAccuracy(const BundleProblem& bundle, std::span<const uint32_t> tracks, const BundleStage& stage, const Eigen::Vector3d* shift);
   ~AdjustmentAccuracy();
 
   // False when the normal equations do not determine the photos: nothing is known then.
@@ -37,5 +37,8 @@ class AdjustmentAccuracy {
 
 // What BundleStage::known_loss leaves of the weight of a measured place when the point is at `x_in_enu`, 0 to 1.
 double KnownWeight(const KnownPoint& known, const Eigen::Vector3d& x_in_enu, double loss);
+
+// Derivatives of where a point gets by translation, rotation and log scale about a middle; `from_middle` is its place from there.
+Eigen::Matrix<double, 3, 7> SimilarityJacobian(const Eigen::Vector3d& from_middle);
 
 }  // namespace skyquilt::prepare

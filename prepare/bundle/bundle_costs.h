@@ -26,7 +26,7 @@ class PoseManifold : public ceres::Manifold {
   bool MinusJacobian(const double* x, double* jacobian) const override;
 };
 
-// (projection - pixel) / unit: blocks pose, lens, point.
+// (projection - pixel) / unit: parameter blocks pose, lens, point.
 class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 8, 3> {
  public:
   ReprojectionCost(const Eigen::Vector2d& pixel, double unit_px) : pixel_(pixel), unit_px_(unit_px) {}
@@ -37,7 +37,7 @@ class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 8, 3> {
   double unit_px_;
 };
 
-// (centre - gps) / sigma per axis: block pose.
+// (centre - gps) / sigma per axis: parameter block pose.
 class PlaceCost : public ceres::SizedCostFunction<3, 7> {
  public:
   PlaceCost(const Eigen::Vector3d& gps, const Eigen::Vector3d& sigma) : gps_(gps), sigma_(sigma) {}
@@ -47,7 +47,7 @@ class PlaceCost : public ceres::SizedCostFunction<3, 7> {
   Eigen::Vector3d gps_, sigma_;
 };
 
-// (centre - gps - shift) / sigma per axis, for positions that are all off by the same: blocks pose, shift.
+// (centre - gps - shift) / sigma per axis, for positions that are all off by the same: parameter blocks pose, shift.
 class ShiftedPlaceCost : public ceres::SizedCostFunction<3, 7, 3> {
  public:
   ShiftedPlaceCost(const Eigen::Vector3d& gps, const Eigen::Vector3d& sigma) : gps_(gps), sigma_(sigma) {}
@@ -57,7 +57,7 @@ class ShiftedPlaceCost : public ceres::SizedCostFunction<3, 7, 3> {
   Eigen::Vector3d gps_, sigma_;
 };
 
-// (point - place) / sigma per axis: block point. An infinite sigma leaves its axis free.
+// (point - place) / sigma per axis: parameter block point. An infinite sigma leaves its axis free.
 class KnownPointCost : public ceres::SizedCostFunction<3, 3> {
  public:
   KnownPointCost(const Eigen::Vector3d& place, const Eigen::Vector3d& sigma) : place_(place), sigma_(sigma) {}
@@ -67,7 +67,7 @@ class KnownPointCost : public ceres::SizedCostFunction<3, 3> {
   Eigen::Vector3d place_, sigma_;
 };
 
-// Rotation vector from the tagged rotation to the pose's, in the camera's frame, over sigma: block pose.
+// Rotation vector from the tagged rotation to the pose's, in the camera's frame, over sigma: parameter block pose.
 class TurnCost : public ceres::SizedCostFunction<3, 7> {
  public:
   TurnCost(const Eigen::Quaterniond& cam_from_enu, double sigma_rad) : tagged_(cam_from_enu), sigma_rad_(sigma_rad) {}

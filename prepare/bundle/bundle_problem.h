@@ -27,7 +27,7 @@ struct FeatureTracks {
   size_t size() const { return first.size() - 1; }
 };
 
-struct BlockPhoto {
+struct BundlePhoto {
   Eigen::Quaterniond cam_from_enu = Eigen::Quaterniond::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // ENU metres
   bool placed = false;                               // has a pose
@@ -38,7 +38,7 @@ struct BlockPhoto {
   std::optional<Eigen::Quaterniond> tagged_rotation;  // cam_from_enu
 };
 
-struct BlockLens {
+struct BundleLens {
   Lens numbers{};
   Lens initial{};
   camera::Camera camera;      // to begin with
@@ -47,9 +47,9 @@ struct BlockLens {
   bool hold_focal = false;    // the focal length stays what it is
 };
 
-struct Block {
-  std::vector<BlockPhoto> photos;
-  std::vector<BlockLens> lenses;
+struct BundleProblem {
+  std::vector<BundlePhoto> photos;
+  std::vector<BundleLens> lenses;
   FeatureTracks tracks;
   std::vector<Eigen::Vector2d> pixel;  // per entry of the tracks
   std::vector<Eigen::Vector3d> point;  // per track, ENU metres
@@ -59,8 +59,8 @@ struct Block {
 
   // Error of an entry against a point, in units; negative when the point is behind the camera. The photo must be placed.
   double Error(uint32_t entry, const Eigen::Vector3d& x_in_enu) const {
-    const BlockPhoto& photo = photos[tracks.entries[entry].photo];
-    const BlockLens& lens = lenses[static_cast<size_t>(photo.lens)];
+    const BundlePhoto& photo = photos[tracks.entries[entry].photo];
+    const BundleLens& lens = lenses[static_cast<size_t>(photo.lens)];
     const Eigen::Vector3d x_in_cam = photo.cam_from_enu * (x_in_enu - photo.centre);
     if (!(x_in_cam.z() > 1e-6)) return -1.0;
     return (Project(lens.numbers, x_in_cam, nullptr) - pixel[entry]).norm() / lens.unit_px;

@@ -22,21 +22,21 @@ std::vector<const survey::ColmapImage*> ConsecutivePhotos(const survey::ColmapMo
   return {first, first + static_cast<std::ptrdiff_t>(max_photos)};
 }
 
-size_t CountPhotos(const BlockPoint& point) {
+size_t CountPhotos(const SamplePoint& point) {
   std::set<int> photos;
   for (const Sighting& sighting : point.sightings) photos.insert(sighting.photo);
   return photos.size();
 }
 
-void DropWeakPoints(std::vector<BlockPoint>& points) {
-  std::erase_if(points, [](const BlockPoint& point) { return CountPhotos(point) < kMinPhotosOfPoint; });
+void DropWeakPoints(std::vector<SamplePoint>& points) {
+  std::erase_if(points, [](const SamplePoint& point) { return CountPhotos(point) < kMinPhotosOfPoint; });
 }
 
 // All points of the model that enough of the photos see.
-std::vector<BlockPoint> CollectPoints(const survey::ColmapModel& model, const survey::ColmapObservations& observations,
-                                      const std::vector<const survey::ColmapImage*>& photos) {
+std::vector<SamplePoint> CollectPoints(const survey::ColmapModel& model, const survey::ColmapObservations& observations,
+                                       const std::vector<const survey::ColmapImage*>& photos) {
   std::unordered_map<uint64_t, size_t> index;
-  std::vector<BlockPoint> points(model.points.size());
+  std::vector<SamplePoint> points(model.points.size());
   for (size_t i = 0; i < points.size(); ++i) {
     index.emplace(model.points[i].id, i);
     points[i].x_in_world = model.points[i].x_in_world;
@@ -53,18 +53,18 @@ std::vector<BlockPoint> CollectPoints(const survey::ColmapModel& model, const su
   return points;
 }
 
-std::vector<BlockPoint> EvenlyChosen(std::vector<BlockPoint> points, size_t max_points) {
+std::vector<SamplePoint> EvenlyChosen(std::vector<SamplePoint> points, size_t max_points) {
   if (points.size() <= max_points) return points;
-  std::vector<BlockPoint> chosen;
+  std::vector<SamplePoint> chosen;
   chosen.reserve(max_points);
   for (size_t i = 0; i < max_points; ++i) chosen.push_back(std::move(points[i * points.size() / max_points]));
   return chosen;
 }
 
 // Per photo: true for those of the largest group that points connect.
-std::vector<char> LargestGroup(size_t n_photos, const std::vector<BlockPoint>& points) {
+std::vector<char> LargestGroup(size_t n_photos, const std::vector<SamplePoint>& points) {
   base::DisjointSets groups(n_photos);
-  for (const BlockPoint& point : points) {
+  for (const SamplePoint& point : points) {
     for (const Sighting& sighting : point.sightings) {
       groups.Join(static_cast<uint32_t>(sighting.photo), static_cast<uint32_t>(point.sightings.front().photo));
     }
@@ -79,7 +79,7 @@ std::vector<char> LargestGroup(size_t n_photos, const std::vector<BlockPoint>& p
 }
 
 // Leaves out all photos that are not to be kept, and points that too few of the others see.
-void Keep(const std::vector<char>& keep, std::vector<const survey::ColmapImage*>& photos, std::vector<BlockPoint>& points) {
+void Keep(const std::vector<char>& keep, std::vector<const survey::ColmapImage*>& photos, std::vector<SamplePoint>& points) {
   std::vector<int> new_index(photos.size(), -1);
   size_t n_kept = 0;
   for (size_t photo = 0; photo < photos.size(); ++photo) {
@@ -88,16 +88,16 @@ void Keep(const std::vector<char>& keep, std::vector<const survey::ColmapImage*>
     photos[n_kept++] = photos[photo];
   }
   photos.resize(n_kept);
-  for (BlockPoint& point : points) {
+  for (SamplePoint& point : points) {
     std::erase_if(point.sightings, [&](const Sighting& sighting) { return keep[static_cast<size_t>(sighting.photo)] == 0; });
     for (Sighting& sighting : point.sightings) sighting.photo = new_index[static_cast<size_t>(sighting.photo)];
   }
   DropWeakPoints(points);
 }
 
-std::vector<char> WellSeen(size_t n_photos, const std::vector<BlockPoint>& points) {
+std::vector<char> WellSeen(size_t n_photos, const std::vector<SamplePoint>& points) {
   std::vector<int> n_sightings(n_photos, 0);
-  for (const BlockPoint& point : points) {
+  for (const SamplePoint& point : points) {
     for (const Sighting& sighting : point.sightings) ++n_sightings[static_cast<size_t>(sighting.photo)];
   }
   std::vector<char> keep(n_photos, 0);
@@ -107,24 +107,24 @@ std::vector<char> WellSeen(size_t n_photos, const std::vector<BlockPoint>& point
 
 }  // namespace
 
-AdjustmentBlock SelectBlock(const survey::ColmapModel& model, const survey::ColmapObservations& observations, uint32_t camera_id, size_t max_photos,
-                            size_t max_points) {
+CameraSample SelectSample(const survey::ColmapModel& model, const survey::ColmapObservations& observations, uint32_t camera_id, size_t max_photos,
+                          size_t max_points) {
   std::vector<const survey::ColmapImage*> photos = ConsecutivePhotos(model, camera_id, max_photos);
-  AdjustmentBlock block;
-  block.points = CollectPoints(model, observations, photos);
-  const size_t n_all = block.points.size();
-  block.points = EvenlyChosen(std::move(block.points), max_points);
-  if (n_all > 0) block.share_of_points = static_cast<double>(block.points.size()) / static_cast<double>(n_all);
-  Keep(LargestGroup(photos.size(), block.points), photos, block.points);
+  CameraSample sample;
+  sample.points = CollectPoints(model, observations, photos);
+  const size_t n_all = sample.points.size();
+  sample.points = EvenlyChosen(std::move(sample.points), max_points);
+  if (n_all > 0) sample.share_of_points = static_cast<double>(sample.points.size()) / static_cast<double>(n_all);
+  Keep(LargestGroup(photos.size(), sample.points), photos, sample.points);
   // Leaving out a photo takes sightings from others' points. Each round but the last removes a photo, so this ends.
-  for (std::vector<char> keep = WellSeen(photos.size(), block.points); std::find(keep.begin(), keep.end(), 0) != keep.end();
-       keep = WellSeen(photos.size(), block.points)) {
-    Keep(keep, photos, block.points);
-    Keep(LargestGroup(photos.size(), block.points), photos, block.points);
+  for (std::vector<char> keep = WellSeen(photos.size(), sample.points); std::find(keep.begin(), keep.end(), 0) != keep.end();
+       keep = WellSeen(photos.size(), sample.points)) {
+    Keep(keep, photos, sample.points);
+    Keep(LargestGroup(photos.size(), sample.points), photos, sample.points);
   }
-  block.cam_from_world.reserve(photos.size());
-  for (const survey::ColmapImage* photo : photos) block.cam_from_world.push_back(photo->cam_from_world);
-  return block;
+  sample.cam_from_world.reserve(photos.size());
+  for (const survey::ColmapImage* photo : photos) sample.cam_from_world.push_back(photo->cam_from_world);
+  return sample;
 }
 
 }  // namespace skyquilt::prepare

@@ -1,4 +1,4 @@
-// One observation of a block as a linear term, and points by their observations alone.
+// One observation of a bundle as a linear term, and points by their observations alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,14 +17,14 @@ struct EntryTerm {
   Eigen::Matrix<double, 2, 8, Eigen::RowMajor> by_lens;
   Eigen::Matrix<double, 2, 3, Eigen::RowMajor> by_point;
 };
-EntryTerm TermOf(const Block& block, uint32_t entry, const Eigen::Vector3d& x_in_enu);
+EntryTerm TermOf(const BundleProblem& bundle, uint32_t entry, const Eigen::Vector3d& x_in_enu);
 
 // The entry agrees and its photo has a pose.
-bool Counts(const Block& block, uint32_t entry);
+bool Counts(const BundleProblem& bundle, uint32_t entry);
 
 // Moves a point to the least squares of its agreeing entries.
-void RefineByMarks(Block& block, uint32_t track);
+void RefineByMarks(BundleProblem& bundle, uint32_t track);
 // Covariance of a point by its agreeing entries alone, as if photos and lenses were exact. Nothing when fewer than two count.
-std::optional<Eigen::Matrix3d> CovarianceByMarks(const Block& block, uint32_t track);
+std::optional<Eigen::Matrix3d> CovarianceByMarks(const BundleProblem& bundle, uint32_t track);
 
 }  // namespace skyquilt::prepare

@@ -52,10 +52,10 @@ class Groups {
 
 constexpr int kGrid = 8;
 
-int CellOf(const Block& block, uint32_t entry) {
-  const BlockPhoto& photo = block.photos[block.tracks.entries[entry].photo];
-  const camera::Camera& camera = block.lenses[static_cast<size_t>(photo.lens)].camera;
-  const Eigen::Vector2d& pixel = block.pixel[entry];
+int CellOf(const BundleProblem& bundle, uint32_t entry) {
+  const BundlePhoto& photo = bundle.photos[bundle.tracks.entries[entry].photo];
+  const camera::Camera& camera = bundle.lenses[static_cast<size_t>(photo.lens)].camera;
+  const Eigen::Vector2d& pixel = bundle.pixel[entry];
   const auto cell = [](double at, int size) { return std::clamp(static_cast<int>(kGrid * at / size), 0, kGrid - 1); };
   return kGrid * cell(pixel.y(), camera.height) + cell(pixel.x(), camera.width);
 }
@@ -99,8 +99,8 @@ FeatureTracks JoinMatches(const std::vector<IndexedPair>& pairs, const std::vect
   return tracks;
 }
 
-std::vector<uint32_t> ChooseTracks(const Block& block, const std::vector<char>& usable, const std::vector<char>& counts, size_t per_photo) {
-  const FeatureTracks& tracks = block.tracks;
+std::vector<uint32_t> ChooseTracks(const BundleProblem& bundle, const std::vector<char>& usable, const std::vector<char>& counts, size_t per_photo) {
+  const FeatureTracks& tracks = bundle.tracks;
   std::vector<uint32_t> length(tracks.size(), 0), order;
   for (uint32_t t = 0; t < tracks.size(); ++t) {
     if (usable[t] == 0) continue;
@@ -109,8 +109,8 @@ std::vector<uint32_t> ChooseTracks(const Block& block, const std::vector<char>& 
   }
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return length[a] > length[b]; });
   const size_t per_cell = std::max<size_t>(1, per_photo / (kGrid * kGrid));
-  std::vector<uint32_t> filled(block.photos.size() * kGrid * kGrid, 0);
-  std::vector<size_t> in_photo(block.photos.size(), 0);
+  std::vector<uint32_t> filled(bundle.photos.size() * kGrid * kGrid, 0);
+  std::vector<size_t> in_photo(bundle.photos.size(), 0);
   const auto least = static_cast<size_t>(kLeastFilled * static_cast<double>(per_photo));
   std::vector<uint32_t> chosen, cells;
   for (const uint32_t t : order) {
@@ -119,7 +119,7 @@ std::vector<uint32_t> ChooseTracks(const Block& block, const std::vector<char>& 
     bool needed = false;
     for (uint32_t e = tracks.first[t]; e < tracks.first[t + 1]; ++e) {
       if (counts[e] == 0) continue;
-      cells.push_back(tracks.entries[e].photo * kGrid * kGrid + static_cast<uint32_t>(CellOf(block, e)));
+      cells.push_back(tracks.entries[e].photo * kGrid * kGrid + static_cast<uint32_t>(CellOf(bundle, e)));
       wanting += filled[cells.back()] < per_cell ? 1 : 0;
       needed = needed || in_photo[tracks.entries[e].photo] < least;
     }

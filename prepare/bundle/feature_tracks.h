@@ -24,6 +24,6 @@ FeatureTracks JoinMatches(const std::vector<IndexedPair>& pairs, const std::vect
 // `per_photo` in all. Bounds the adjustment to a number of observations that grows linearly with the photos. Only tracks with
 // `usable` != 0 and entries with `counts` != 0; indices ascend.
 constexpr double kLeastFilled = 0.75;
-std::vector<uint32_t> ChooseTracks(const Block& block, const std::vector<char>& usable, const std::vector<char>& counts, size_t per_photo);
+std::vector<uint32_t> ChooseTracks(const BundleProblem& bundle, const std::vector<char>& usable, const std::vector<char>& counts, size_t per_photo);
 
 }  // namespace skyquilt::prepare

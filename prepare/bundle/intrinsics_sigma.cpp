@@ -154,16 +154,16 @@ void AddPoint(const std::vector<std::pair<int, Linearized>>& rows, Reduced& redu
   ++reduced.n_points;
 }
 
-Reduced BuildNormalEquations(const AdjustmentBlock& block, const camera::Camera& camera, const std::vector<size_t>& free) {
-  const Index n = 6 * static_cast<Index>(block.cam_from_world.size());
+Reduced BuildNormalEquations(const CameraSample& sample, const camera::Camera& camera, const std::vector<size_t>& free) {
+  const Index n = 6 * static_cast<Index>(sample.cam_from_world.size());
   const auto m = static_cast<Index>(free.size());
   Reduced reduced{MatrixXd::Zero(n, n), MatrixXd::Zero(n, m), MatrixXd::Zero(m, m)};
   Linearizer linearizer(camera, free);
   std::vector<std::pair<int, Linearized>> rows;
-  for (const BlockPoint& point : block.points) {
+  for (const SamplePoint& point : sample.points) {
     rows.clear();
     for (const Sighting& sighting : point.sightings) {
-      auto row = linearizer.At(block.cam_from_world[static_cast<size_t>(sighting.photo)], point.x_in_world, sighting.pixel);
+      auto row = linearizer.At(sample.cam_from_world[static_cast<size_t>(sighting.photo)], point.x_in_world, sighting.pixel);
       if (row) rows.emplace_back(sighting.photo, std::move(*row));
     }
     if (rows.size() >= 2) AddPoint(rows, reduced);
@@ -247,22 +247,22 @@ LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey:
   const camera::Camera& camera = found->second;
   const int k1_index = RadialParameterIndex(camera.model);
   if (k1_index < 0 || !HasDistortion(camera, k1_index)) return accuracy;
-  const AdjustmentBlock block = SelectBlock(model, observations, camera_id, kMaxLensPhotos, kMaxLensPoints);
-  if (block.cam_from_world.size() < 3) return accuracy;
+  const CameraSample sample = SelectSample(model, observations, camera_id, kMaxLensPhotos, kMaxLensPoints);
+  if (sample.cam_from_world.size() < 3) return accuracy;
 
   const std::vector<size_t> free = FreeParameters(camera);
-  const Reduced reduced = BuildNormalEquations(block, camera, free);
-  accuracy.n_photos = static_cast<int>(block.cam_from_world.size());
+  const Reduced reduced = BuildNormalEquations(sample, camera, free);
+  accuracy.n_photos = static_cast<int>(sample.cam_from_world.size());
   accuracy.n_points = reduced.n_points;
   accuracy.n_observations = reduced.n_observations;
   const int redundancy = 2 * reduced.n_observations - 6 * accuracy.n_photos - 3 * reduced.n_points - static_cast<int>(free.size()) + kFrameFreedoms;
   if (redundancy < 1) return accuracy;
   accuracy.sigma0_px = std::sqrt(reduced.sum_of_squares / redundancy);
   if (!(accuracy.sigma0_px > kExactResidual_px)) return accuracy;
-  const auto information = CameraInformation(reduced, EstimatedPoseUnknowns(block.cam_from_world));
+  const auto information = CameraInformation(reduced, EstimatedPoseUnknowns(sample.cam_from_world));
   if (!information) return accuracy;
   const auto k1_at = std::find(free.begin(), free.end(), static_cast<size_t>(k1_index)) - free.begin();
-  const double variance = InverseDiagonal(*information, k1_at) * block.share_of_points;
+  const double variance = InverseDiagonal(*information, k1_at) * sample.share_of_points;
   const double sigma = accuracy.sigma0_px * std::sqrt(variance);
   if (std::isfinite(sigma)) accuracy.k1_sigma = sigma;
   return accuracy;

@@ -11,19 +11,19 @@
 namespace skyquilt::prepare {
 namespace {
 
-bool Resect(Block& block, uint32_t index, const std::vector<uint32_t>& entries, const std::vector<uint32_t>& track_of, double threshold) {
-  BlockPhoto& photo = block.photos[index];
-  const BlockLens& lens = block.lenses[static_cast<size_t>(photo.lens)];
+bool Resect(BundleProblem& bundle, uint32_t index, const std::vector<uint32_t>& entries, const std::vector<uint32_t>& track_of, double threshold) {
+  BundlePhoto& photo = bundle.photos[index];
+  const BundleLens& lens = bundle.lenses[static_cast<size_t>(photo.lens)];
   const camera::Camera camera = CameraOf(lens.numbers, lens.camera);
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> places;
   for (const uint32_t e : entries) {
     const uint32_t t = track_of[e];
-    if (block.has_point[t] == 0) continue;
-    const Eigen::Vector3d ray = camera.RayFromImg(block.pixel[e]);
+    if (bundle.has_point[t] == 0) continue;
+    const Eigen::Vector3d ray = camera.RayFromImg(bundle.pixel[e]);
     constexpr double kLeastDepth = 0.1;
     if (ray.z() < kLeastDepth) continue;
-    points.emplace_back(block.point[t].x(), block.point[t].y(), block.point[t].z());
+    points.emplace_back(bundle.point[t].x(), bundle.point[t].y(), bundle.point[t].z());
     places.emplace_back(ray.x() / ray.z(), ray.y() / ray.z());
   }
   if (points.size() < kLeastObservations) return false;
@@ -69,19 +69,19 @@ Eigen::Matrix3d CrossProduct(const Eigen::Vector3d& a) {
 
 // Change of a photo's pose by the errors of entries within the threshold: turn of the camera in its own frame, shift of its centre. Large errors
 // count as in the bundle adjustment.
-Eigen::VectorXd PoseChange(const Block& block, const BlockPhoto& photo, const std::vector<uint32_t>& entries, const std::vector<uint32_t>& track_of,
-                           double threshold) {
+Eigen::VectorXd PoseChange(const BundleProblem& bundle, const BundlePhoto& photo, const std::vector<uint32_t>& entries,
+                           const std::vector<uint32_t>& track_of, double threshold) {
   constexpr double kGentle = 2.5;
-  const BlockLens& lens = block.lenses[static_cast<size_t>(photo.lens)];
+  const BundleLens& lens = bundle.lenses[static_cast<size_t>(photo.lens)];
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(6, 6);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(6);
   for (const uint32_t e : entries) {
     const uint32_t t = track_of[e];
-    const double error = block.has_point[t] != 0 ? block.Error(e, block.point[t]) : -1.0;
+    const double error = bundle.has_point[t] != 0 ? bundle.Error(e, bundle.point[t]) : -1.0;
     if (error < 0.0 || error > threshold) continue;
-    const Eigen::Vector3d x_in_cam = photo.cam_from_enu * (block.point[t] - photo.centre);
+    const Eigen::Vector3d x_in_cam = photo.cam_from_enu * (bundle.point[t] - photo.centre);
     LensJacobian jacobian;
-    const Eigen::Vector2d residual = (Project(lens.numbers, x_in_cam, &jacobian) - block.pixel[e]) / lens.unit_px;
+    const Eigen::Vector2d residual = (Project(lens.numbers, x_in_cam, &jacobian) - bundle.pixel[e]) / lens.unit_px;
     Eigen::Matrix<double, 2, 6> by_pose;
     by_pose << -jacobian.by_point * CrossProduct(x_in_cam), -jacobian.by_point * photo.cam_from_enu.toRotationMatrix();
     by_pose /= lens.unit_px;
@@ -94,9 +94,9 @@ Eigen::VectorXd PoseChange(const Block& block, const BlockPhoto& photo, const st
 
 }  // namespace
 
-std::vector<std::vector<uint32_t>> EntriesOfPhotos(const Block& block) {
-  std::vector<std::vector<uint32_t>> entries(block.photos.size());
-  for (uint32_t e = 0; e < block.tracks.entries.size(); ++e) entries[block.tracks.entries[e].photo].push_back(e);
+std::vector<std::vector<uint32_t>> EntriesOfPhotos(const BundleProblem& bundle) {
+  std::vector<std::vector<uint32_t>> entries(bundle.photos.size());
+  for (uint32_t e = 0; e < bundle.tracks.entries.size(); ++e) entries[bundle.tracks.entries[e].photo].push_back(e);
   return entries;
 }
 
@@ -108,23 +108,24 @@ std::vector<uint32_t> TrackOfEntries(const FeatureTracks& tracks) {
   return track_of;
 }
 
-size_t ResectPhotos(Block& block, double threshold) {
-  const std::vector<std::vector<uint32_t>> entries = EntriesOfPhotos(block);
-  const std::vector<uint32_t> track_of = TrackOfEntries(block.tracks);
+size_t ResectPhotos(BundleProblem& bundle, double threshold) {
+  const std::vector<std::vector<uint32_t>> entries = EntriesOfPhotos(bundle);
+  const std::vector<uint32_t> track_of = TrackOfEntries(bundle.tracks);
   size_t n = 0;
-  for (uint32_t i = 0; i < block.photos.size(); ++i) {
-    if (block.photos[i].placed) continue;
+  for (uint32_t i = 0; i < bundle.photos.size(); ++i) {
+    if (bundle.photos[i].placed) continue;
     base::ThrowIfCancelled();
-    n += Resect(block, i, entries[i], track_of, threshold) ? 1 : 0;
+    n += Resect(bundle, i, entries[i], track_of, threshold) ? 1 : 0;
   }
   return n;
 }
 
-size_t RefineByPoints(Block& block, uint32_t photo, const std::vector<uint32_t>& entries, const std::vector<uint32_t>& track_of, double threshold) {
-  BlockPhoto& moved = block.photos[photo];
+size_t RefineByPoints(BundleProblem& bundle, uint32_t photo, const std::vector<uint32_t>& entries, const std::vector<uint32_t>& track_of,
+                      double threshold) {
+  BundlePhoto& moved = bundle.photos[photo];
   constexpr int kSteps = 10;
   for (int step = 0; step < kSteps; ++step) {
-    const Eigen::VectorXd change = PoseChange(block, moved, entries, track_of, threshold);
+    const Eigen::VectorXd change = PoseChange(bundle, moved, entries, track_of, threshold);
     if (!change.allFinite()) break;
     const Eigen::Vector3d turn = change.head<3>();
     if (turn.norm() > 0.0) {
@@ -135,9 +136,9 @@ size_t RefineByPoints(Block& block, uint32_t photo, const std::vector<uint32_t>&
   size_t n = 0;
   for (const uint32_t e : entries) {
     const uint32_t t = track_of[e];
-    const double error = block.has_point[t] != 0 ? block.Error(e, block.point[t]) : -1.0;
-    block.agrees[e] = error >= 0.0 && error <= threshold ? 1 : 0;
-    n += block.agrees[e] != 0 ? 1 : 0;
+    const double error = bundle.has_point[t] != 0 ? bundle.Error(e, bundle.point[t]) : -1.0;
+    bundle.agrees[e] = error >= 0.0 && error <= threshold ? 1 : 0;
+    n += bundle.agrees[e] != 0 ? 1 : 0;
   }
   return n;
 }

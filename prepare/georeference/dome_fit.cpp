@@ -18,7 +18,7 @@ constexpr double kHuber = 1.345;  // 95 % efficient for normal errors
 constexpr int kMaxRounds = 50;
 constexpr double kEdgeShare = 0.95;
 constexpr double kMinBreadth = 0.1;  // of the positions' length
-// What 1, x and y leave of r^2 must be this share of its size at the edge, as standard deviation. A full square block has 0.3.
+// What 1, x and y leave of r^2 must be this share of its size at the edge, as standard deviation. A full square of photos has 0.3.
 constexpr double kMinCurvature = 0.02;
 constexpr Index kUnknowns = 4;
 

@@ -88,7 +88,7 @@ struct TagsAlone {
   geo::Similarity3d enu_from_model;
 };
 
-TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<Tag>& tags, const PrepareOptions& options) {
+TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<Tag>& tags, const PlaceOptions& options) {
   std::vector<Vector3d> in_model, in_enu;
   for (const Tag& tag : tags) {
     if (!tag.x_in_enu.allFinite()) continue;
@@ -113,7 +113,7 @@ TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<T
 }
 
 // For comparison with gimbal angles that the photos contradict.
-std::optional<Vector3d> UpByTags(const std::vector<Station>& stations, const PrepareOptions& options) {
+std::optional<Vector3d> UpByTags(const std::vector<Station>& stations, const PlaceOptions& options) {
   constexpr double kUseful_deg = 10.0;
   const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
   if (n_tagged < kMinAgreeing || TagsAboveOneAnother(stations)) return std::nullopt;
@@ -143,7 +143,7 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
     result.problems.push_back(NoPlace("no_fit", "the GPS tags do not determine position, scale and direction", "Use photos with good GPS tags"));
     return;
   }
-  geo::Similarity3d start = Raised(flight, tags, level_from_model, flat);
+  geo::Similarity3d start = SimilarityOfFit(flight, tags, level_from_model, flat);
   Vector3d middle = Vector3d::Zero();
   for (const Station& station : flight.stations) middle += station.cam_from_model.OriginInSource() / static_cast<double>(flight.stations.size());
 
@@ -252,7 +252,7 @@ bool LeavesNorthOpen(const std::vector<Station>& stations, const Gravity& gravit
 
 }  // namespace
 
-Georeference PlaceOnEarth(const std::vector<Station>& given, const std::vector<Vector3d>& points, const PrepareOptions& options) {
+Georeference PlaceOnEarth(const std::vector<Station>& given, const std::vector<Vector3d>& points, const PlaceOptions& options) {
   Georeference result;
   result.gimbal = JudgeGimbal(given, points, [&] { return UpByTags(given, options); });
   const std::vector<Station> without_angles = result.gimbal.use == GimbalUse::kDropped ? WithoutAngles(given) : std::vector<Station>();
@@ -304,7 +304,7 @@ Georeference PlaceOnEarth(const std::vector<Station>& given, const std::vector<V
   return result;
 }
 
-Georeference KeepExactFrame(const std::vector<Station>& stations, const geo::Geodetic& origin, const PrepareOptions& options) {
+Georeference KeepExactFrame(const std::vector<Station>& stations, const geo::Geodetic& origin, const PlaceOptions& options) {
   Georeference result;
   result.ok = true;
   result.origin = origin;

@@ -12,8 +12,8 @@
 #include "core/survey/survey.h"
 #include "prepare/georeference/gimbal_check.h"
 #include "prepare/georeference/gravity.h"
+#include "prepare/georeference/place_options.h"
 #include "prepare/input/station.h"
-#include "prepare/prepare_options.h"
 
 namespace skyquilt::prepare {
 
@@ -33,9 +33,9 @@ struct Georeference {
 
 // `points` are the sparse points in the model's frame, may be empty. Gimbal angles that stand alone against the photos and the tagged positions are
 // not used (gimbal_check.h).
-Georeference PlaceOnEarth(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points, const PrepareOptions& options);
+Georeference PlaceOnEarth(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points, const PlaceOptions& options);
 // For a model that is already in ENU about `origin`: keeps its frame and only computes the residuals of the tags.
-Georeference KeepExactFrame(const std::vector<Station>& stations, const geo::Geodetic& origin, const PrepareOptions& options);
+Georeference KeepExactFrame(const std::vector<Station>& stations, const geo::Geodetic& origin, const PlaceOptions& options);
 // Frame for a model without GPS: z along `up`; origin: median of the points; the median depth of points in the cameras becomes kLocalDepth. `up` and
 // `points` are in the model's frame; `points` may be empty.
 geo::Similarity3d LocalFrame(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up);

@@ -60,8 +60,8 @@ HorizontalFit FitLevelled(const TaggedFlight& flight, const std::vector<Tag>& ta
   return narrow.n_inliers >= kMinAgreeing ? narrow : fit;
 }
 
-geo::Similarity3d Raised(const TaggedFlight& flight, const std::vector<Tag>& tags, const Eigen::Quaterniond& level_from_model,
-                         const HorizontalFit& fit) {
+geo::Similarity3d SimilarityOfFit(const TaggedFlight& flight, const std::vector<Tag>& tags, const Eigen::Quaterniond& level_from_model,
+                                  const HorizontalFit& fit) {
   const HorizontalSimilarity& flat = fit.enu_from_level;
   geo::Similarity3d result;
   result.scale = flat.scale;

@@ -9,9 +9,9 @@
 #include "prepare/georeference/gravity.h"
 #include "prepare/georeference/height_bias.h"
 #include "prepare/georeference/horizontal_fit.h"
+#include "prepare/georeference/place_options.h"
 #include "prepare/georeference/tags/tags.h"
 #include "prepare/georeference/tags/track.h"
-#include "prepare/prepare_options.h"
 
 namespace skyquilt::prepare {
 
@@ -20,7 +20,7 @@ struct TaggedFlight {
   const std::vector<Station>& stations;
   const Track& track;
   const std::vector<int>& flight;  // of each station
-  const PrepareOptions& options;
+  const PlaceOptions& options;
 };
 
 // Lags of the tags to try, seconds; only 0 where photos have no times or prepare.tag_lag is off.
@@ -28,8 +28,8 @@ std::vector<double> LagsToTry(const TaggedFlight& flight);
 // Scale, direction, horizontal place and lag, with a threshold that suits the noise of the tags.
 HorizontalFit FitLevelled(const TaggedFlight& flight, const std::vector<Tag>& tags, const Eigen::Matrix3d& level_from_model);
 // The similarity of a horizontal fit; its height comes from the median of the tags.
-geo::Similarity3d Raised(const TaggedFlight& flight, const std::vector<Tag>& tags, const Eigen::Quaterniond& level_from_model,
-                         const HorizontalFit& fit);
+geo::Similarity3d SimilarityOfFit(const TaggedFlight& flight, const std::vector<Tag>& tags, const Eigen::Quaterniond& level_from_model,
+                                  const HorizontalFit& fit);
 // Heights of the tags against a reconstruction placed by `start`, for ChooseBias. `middle` is in the model's frame.
 HeightObservations ObserveHeights(const TaggedFlight& flight, const std::vector<Tag>& tags, const geo::Similarity3d& start, const HorizontalFit& fit,
                                   const Gravity& gravity, const Eigen::Vector3d& middle);

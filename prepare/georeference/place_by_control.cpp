@@ -60,8 +60,8 @@ void SettleReading(const ControlJob& without_ties, ControlPoints& control) {
 
 }  // namespace
 
-ControlPoints ReadControlPoints(const PrepareOptions& options, const std::vector<PhotoFile>& files) {
-  if (options.gcp.empty()) return {};
+ControlPoints ReadControlPoints(const ControlFiles& given, const std::vector<PhotoFile>& files) {
+  if (given.points.empty()) return {};
   std::vector<PhotoSize> photos;
   std::vector<geo::Geodetic> tags;
   photos.reserve(files.size());
@@ -69,13 +69,7 @@ ControlPoints ReadControlPoints(const PrepareOptions& options, const std::vector
     photos.push_back({file.name, file.width, file.height, file.tags.original_width, file.tags.original_height, file.tags.orientation});
     if (file.tags.gps) tags.push_back(*file.tags.gps);
   }
-  ControlPoints control = ReadControl({.points = options.gcp,
-                                       .marks = options.gcp_marks,
-                                       .crs = options.gcp_crs,
-                                       .columns = options.gcp_columns,
-                                       .heights = options.gcp_heights,
-                                       .check_points = options.check_points},
-                                      photos);
+  ControlPoints control = ReadControl(given, photos);
   for (const std::string& warning : control.warnings) base::LogWarning("{}", warning);
   CheckNear(control, tags);
   // Tags may turn out not to place the survey; then FitControl refuses.

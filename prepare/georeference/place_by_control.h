@@ -8,19 +8,20 @@
 #include "core/survey/colmap_model.h"
 #include "core/survey/control_fit.h"
 #include "prepare/control/reading/control_points.h"
+#include "prepare/control/reading/read_control.h"
 #include "prepare/georeference/georeference.h"
+#include "prepare/georeference/place_options.h"
 #include "prepare/input/photo_files.h"
 #include "prepare/input/station.h"
-#include "prepare/prepare_options.h"
 
 namespace skyquilt::prepare {
 
-// The control points that the options name, none without options.gcp: warnings are logged, and the points are near the photos' tags and enough where
+// The control points of these files, none without a file of points: warnings are logged, and the points are near the photos' tags and enough where
 // there are no tags. Throws as ReadControl, CheckNear and CheckGeometry do.
-ControlPoints ReadControlPoints(const PrepareOptions& options, const std::vector<PhotoFile>& files);
+ControlPoints ReadControlPoints(const ControlFiles& given, const std::vector<PhotoFile>& files);
 
 struct ControlInput {
-  const PrepareOptions& options;
+  const PlaceOptions& options;
   const ControlPoints& control;
   const std::vector<size_t>& image_of_station;  // index into the model's images, see ControlJob
   std::filesystem::path model_folder;           // where the model's observations are read from

@@ -9,13 +9,13 @@
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_model.h"
 #include "prepare/georeference/georeference.h"
+#include "prepare/georeference/place_options.h"
 #include "prepare/input/station.h"
-#include "prepare/prepare_options.h"
 
 namespace skyquilt::prepare {
 
 struct ShapeInput {
-  const PrepareOptions& options;
+  const PlaceOptions& options;
   const std::vector<size_t>& image_of_station;      // index into the model's images
   std::filesystem::path model_folder;               // where the model's observations are read from; they are features of photos
   std::map<uint32_t, double> tagged_focal_px = {};  // by the camera ids of the model, where tags say it

@@ -245,11 +245,11 @@ void NoteLeftOut(const std::vector<PhotoSource>& sources, const PhotoSet& photos
 }
 
 // Whether all that an earlier call had to make is there. Puts its problems into the sources.
-bool IsMade(const fs::path& made, const std::string& asked, const PhotoSet& photos, std::vector<PhotoSource>& sources) {
-  if (!fs::exists(made / kStampName) || base::ReadFile(made / kStampName) != asked) return false;
-  const std::map<std::string, std::string> problems = ReadLeftOut(made);
+bool IsMade(const fs::path& copies, const std::string& asked, const PhotoSet& photos, std::vector<PhotoSource>& sources) {
+  if (!fs::exists(copies / kStampName) || base::ReadFile(copies / kStampName) != asked) return false;
+  const std::map<std::string, std::string> problems = ReadLeftOut(copies);
   for (const PhotoFile& photo : photos.usable) {
-    if (!problems.contains(photo.name) && !fs::exists(made / photo.name)) return false;
+    if (!problems.contains(photo.name) && !fs::exists(copies / photo.name)) return false;
   }
   for (PhotoSource& source : sources) {
     const auto found = problems.find(photos.usable[source.photo].name);
@@ -288,19 +288,19 @@ fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, c
     fs::remove_all(folder);
     return photo_root;
   }
-  const fs::path made = fs::absolute(folder);
+  const fs::path copies = fs::absolute(folder);
   const auto mark = [&] {
     for (const PhotoSource& source : sources) photos.usable[source.photo].converted = true;
   };
   const std::string asked = StampOf(photo_root, bands, sources, photos);
-  if (IsMade(made, asked, photos, sources)) {
+  if (IsMade(copies, asked, photos, sources)) {
     LeaveOutProblems(photo_root, sources, photos);
-    base::LogInfo("{} of {} photos are already converted to 8 bits, in {}", sources.size(), photos.usable.size(), made.string());
+    base::LogInfo("{} of {} photos are already converted to 8 bits, in {}", sources.size(), photos.usable.size(), copies.string());
     mark();
-    return made;
+    return copies;
   }
-  fs::remove_all(made);
-  base::RequireWritableFolder(made);
+  fs::remove_all(copies);
+  base::RequireWritableFolder(copies);
   std::string left_out;
   ForSources(sources, "read range of photos", threads, [&](PhotoSource& source) {
     const PhotoFile& photo = photos.usable[source.photo];
@@ -317,24 +317,24 @@ fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, c
   }
   const WhiteLevel white = deep.empty() ? WhiteLevel{255.0, ""} : FindWhite(deep);
   if (!sources.empty()) {
-    base::LogInfo("{} are converted to 8 bits in {}{}", DescribeSources(sources), made.string(),
+    base::LogInfo("{} are converted to 8 bits in {}{}", DescribeSources(sources), copies.string(),
                   deep.empty() ? "" : fmt::format("; white is {:g} ({})", white.value, white.reason));
   }
-  for (const PhotoFile& photo : photos.usable) fs::create_directories((made / photo.name).parent_path());
+  for (const PhotoFile& photo : photos.usable) fs::create_directories((copies / photo.name).parent_path());
   ForSources(sources, "convert photos", threads, [&](const PhotoSource& source) {
     const std::string& name = photos.usable[source.photo].name;
     const image::Image8 image = Converted(gis::PhotoBands(photo_root / name), source, is_deep(source) ? white.value : 255.0);
-    base::WriteFileAtomically(made / name, image::EncodePng(image, kPngLevel));
+    base::WriteFileAtomically(copies / name, image::EncodePng(image, kPngLevel));
   });
   NoteLeftOut(sources, photos, left_out);
   LeaveOutProblems(photo_root, sources, photos);
   mark();
   for (const PhotoFile& photo : photos.usable) {
-    if (!photo.converted) LinkPhoto(fs::absolute(photo_root / photo.name), made / photo.name);
+    if (!photo.converted) LinkPhoto(fs::absolute(photo_root / photo.name), copies / photo.name);
   }
-  base::WriteFileAtomically(made / kLeftOutName, left_out);
-  base::WriteFileAtomically(made / kStampName, asked);
-  return made;
+  base::WriteFileAtomically(copies / kLeftOutName, left_out);
+  base::WriteFileAtomically(copies / kStampName, asked);
+  return copies;
 }
 
 }  // namespace skyquilt::prepare

@@ -30,32 +30,38 @@ constexpr int kMaxRejected = 4;   // each needs an adjustment
 
 class Adjuster {
  public:
-  Adjuster(ControlBlock& made, std::vector<ControlState>& points, Vector3d* shift, base::ThreadPool& threads,
+  Adjuster(ControlBundle& marked, std::vector<ControlState>& points, Vector3d* shift, base::ThreadPool& threads,
            const std::function<void()>& on_iteration)
-      : made_(made), block_(made.block), points_(points), shift_(shift), threads_(threads), on_iteration_(on_iteration), all_ties_(made.n_ties) {
+      : marked_(marked),
+        bundle_(marked.bundle),
+        points_(points),
+        shift_(shift),
+        threads_(threads),
+        on_iteration_(on_iteration),
+        all_ties_(marked.n_ties) {
     std::iota(all_ties_.begin(), all_ties_.end(), uint32_t{0});
   }
 
   ControlAdjustment Run() {
     ControlAdjustment result;
-    const ControlBlock before = made_;
+    const ControlBundle before = marked_;
     const std::vector<ControlState> points_before = points_;
     if (!Begin()) return Failed(before, points_before);
     for (int round = 0;; ++round) {
-      Triangulate(block_, all_ties_, kTieThreshold, threads_);
+      Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
       MeasureTies(ties_);
       MeasureMarks();
       Choose();
       if (!Adjust(1e-9, 50)) return Failed(before, points_before);
       // Once more with the marks that agree with this result.
       if (JudgeMarks() && !Adjust(1e-9, 50)) return Failed(before, points_before);
-      const AdjustmentAccuracy accuracy(block_, tracks_, Stage(0.0, 0), shift_);
+      const AdjustmentAccuracy accuracy(bundle_, tracks_, Stage(0.0, 0), shift_);
       if (!accuracy.ok()) return Failed(before, points_before);
       Evaluate(accuracy);
       result.accuracy = accuracy.OfPlace();
       if (round >= kMaxRejected || !RejectWorst()) break;
     }
-    Triangulate(block_, all_ties_, kTieThreshold, threads_);
+    Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
     result.ok = true;
     result.misfit = MisfitOf(points_);
     Inflate(&result);
@@ -63,18 +69,18 @@ class Adjuster {
   }
 
   bool RunByFeatures() {
-    const ControlBlock before = made_;
+    const ControlBundle before = marked_;
     bool solved = Begin();
     if (solved) {
-      Triangulate(block_, all_ties_, kTieThreshold, threads_);
+      Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
       MeasureTies(ties_);
       Choose();
       solved = Adjust(1e-9, 50);
     }
     if (solved) {
-      Triangulate(block_, all_ties_, kTieThreshold, threads_);
+      Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
     } else {
-      made_ = before;
+      marked_ = before;
     }
     return solved;
   }
@@ -87,8 +93,8 @@ class Adjuster {
     return Adjust(1e-6, 30);
   }
 
-  ControlAdjustment Failed(const ControlBlock& before, const std::vector<ControlState>& points_before) {
-    made_ = before;
+  ControlAdjustment Failed(const ControlBundle& before, const std::vector<ControlState>& points_before) {
+    marked_ = before;
     points_ = points_before;
     return {};
   }
@@ -102,16 +108,16 @@ class Adjuster {
     tracks_ = ties_;
     for (size_t i = 0; i < points_.size(); ++i) {
       if (!points_[i].used) continue;
-      known_.push_back(points_[i].Known(made_.TrackOfPoint(i)));
-      tracks_.push_back(made_.TrackOfPoint(i));
+      known_.push_back(points_[i].Known(marked_.TrackOfPoint(i)));
+      tracks_.push_back(marked_.TrackOfPoint(i));
     }
-    return AdjustBundle(block_, tracks_, Stage(tolerance, iterations), on_iteration_, shift_);
+    return AdjustBundle(bundle_, tracks_, Stage(tolerance, iterations), on_iteration_, shift_);
   }
 
   void Choose() {
-    std::vector<char> usable = block_.has_point;
-    std::fill(usable.begin() + static_cast<std::ptrdiff_t>(made_.n_ties), usable.end(), char{0});
-    ties_ = ChooseTracks(block_, usable, block_.agrees, kTiesPerPhoto);
+    std::vector<char> usable = bundle_.has_point;
+    std::fill(usable.begin() + static_cast<std::ptrdiff_t>(marked_.n_ties), usable.end(), char{0});
+    ties_ = ChooseTracks(bundle_, usable, bundle_.agrees, kTiesPerPhoto);
   }
 
   // Features' sigma from the median error of the agreeing ones; the adjustment has taken a share of it.
@@ -119,35 +125,35 @@ class Adjuster {
     std::vector<double> errors;
     double unknowns = 0.0;
     for (const uint32_t t : of) {
-      if (block_.has_point[t] == 0) continue;
+      if (bundle_.has_point[t] == 0) continue;
       const size_t n = errors.size();
-      for (uint32_t e = block_.tracks.first[t]; e < block_.tracks.first[t + 1]; ++e) {
-        const double error = block_.agrees[e] != 0 ? block_.Error(e, block_.point[t]) : -1.0;
+      for (uint32_t e = bundle_.tracks.first[t]; e < bundle_.tracks.first[t + 1]; ++e) {
+        const double error = bundle_.agrees[e] != 0 ? bundle_.Error(e, bundle_.point[t]) : -1.0;
         if (error >= 0.0) errors.push_back(error);
       }
       unknowns += errors.size() > n ? 3.0 : 0.0;
     }
-    unknowns += 6.0 * static_cast<double>(block_.photos.size());
+    unknowns += 6.0 * static_cast<double>(bundle_.photos.size());
     if (errors.empty()) return;
     const double residuals = 2.0 * static_cast<double>(errors.size());
     const double share = std::max(0.1, (residuals - unknowns) / residuals);
-    const double sigma = made_.tie_sigma * base::UpperMedian(errors) / kRayleighMedian / std::sqrt(share);
-    made_.SetAccuracy(std::max(sigma, kLeastTieSigma), made_.mark_sigma_px);
+    const double sigma = marked_.tie_sigma * base::UpperMedian(errors) / kRayleighMedian / std::sqrt(share);
+    marked_.SetAccuracy(std::max(sigma, kLeastTieSigma), marked_.mark_sigma_px);
   }
 
   // Estimates the marks' sigma; its value before counts as much as ten residuals of the marks.
   void MeasureMarks() {
-    PlaceUnusedPoints(made_, points_, made_.MarkThreshold(kMarkThreshold));
+    PlaceUnusedPoints(marked_, points_, marked_.MarkThreshold(kMarkThreshold));
     constexpr double kPriorWeight = 10.0, kLeast = 0.2, kMost = 6.0;
     std::vector<double> errors_px;
     double residuals = 0.0, unknowns = 0.0;
     for (size_t i = 0; i < points_.size(); ++i) {
-      const uint32_t t = made_.TrackOfPoint(i);
-      if (block_.has_point[t] == 0) continue;
+      const uint32_t t = marked_.TrackOfPoint(i);
+      if (bundle_.has_point[t] == 0) continue;
       const size_t n = errors_px.size();
-      for (uint32_t e = block_.tracks.first[t]; e < block_.tracks.first[t + 1]; ++e) {
-        const double error = block_.Error(e, block_.point[t]);
-        const double unit_px = block_.lenses[static_cast<size_t>(block_.photos[block_.tracks.entries[e].photo].lens)].unit_px;
+      for (uint32_t e = bundle_.tracks.first[t]; e < bundle_.tracks.first[t + 1]; ++e) {
+        const double error = bundle_.Error(e, bundle_.point[t]);
+        const double unit_px = bundle_.lenses[static_cast<size_t>(bundle_.photos[bundle_.tracks.entries[e].photo].lens)].unit_px;
         if (error >= 0.0) errors_px.push_back(error * unit_px);
       }
       const size_t of_point = errors_px.size() - n;
@@ -158,41 +164,41 @@ class Adjuster {
       residuals += 2.0 * static_cast<double>(of_point);
       unknowns += 3.0;
     }
-    if (first_mark_sigma_px_ <= 0.0) first_mark_sigma_px_ = made_.mark_sigma_px;
+    if (first_mark_sigma_px_ <= 0.0) first_mark_sigma_px_ = marked_.mark_sigma_px;
     const double said = first_mark_sigma_px_;
     double sigma_px = said;
     if (!errors_px.empty()) {
       const double seen = base::UpperMedian(errors_px) / kRayleighMedian / std::sqrt((residuals - unknowns) / residuals);
       sigma_px = std::sqrt((kPriorWeight * said * said + (residuals - unknowns) * seen * seen) / (kPriorWeight + residuals - unknowns));
     }
-    made_.SetAccuracy(made_.tie_sigma, std::clamp(sigma_px, kLeast * said, kMost * said));
+    marked_.SetAccuracy(marked_.tie_sigma, std::clamp(sigma_px, kLeast * said, kMost * said));
   }
 
   // True when other marks of used points agree than before.
   bool JudgeMarks() {
-    const auto first_mark = block_.agrees.begin() + static_cast<std::ptrdiff_t>(block_.tracks.first[made_.n_ties]);
-    const std::vector<char> before(first_mark, block_.agrees.end());
-    JudgeUsedMarks(made_, points_, made_.MarkThreshold(kMarkThreshold));
+    const auto first_mark = bundle_.agrees.begin() + static_cast<std::ptrdiff_t>(bundle_.tracks.first[marked_.n_ties]);
+    const std::vector<char> before(first_mark, bundle_.agrees.end());
+    JudgeUsedMarks(marked_, points_, marked_.MarkThreshold(kMarkThreshold));
     const bool changed = !std::equal(before.begin(), before.end(), first_mark);
     for (size_t i = 0; i < points_.size(); ++i) {
       // Two marks make a point.
-      if (!points_[i].used || block_.has_point[made_.TrackOfPoint(i)] != 0) continue;
+      if (!points_[i].used || bundle_.has_point[marked_.TrackOfPoint(i)] != 0) continue;
       points_[i].used = false;
       points_[i].contradicts = true;
     }
-    PlaceUnusedPoints(made_, points_, made_.MarkThreshold(kMarkThreshold));
+    PlaceUnusedPoints(marked_, points_, marked_.MarkThreshold(kMarkThreshold));
     return changed;
   }
 
   void DropOutliers() {
     for (const uint32_t t : all_ties_) {
       size_t n = 0;
-      for (uint32_t e = block_.tracks.first[t]; e < block_.tracks.first[t + 1]; ++e) {
-        const double error = block_.Error(e, block_.point[t]);
-        block_.agrees[e] = error >= 0.0 && error <= kTieThreshold ? 1 : 0;
-        n += block_.agrees[e] != 0 ? 1 : 0;
+      for (uint32_t e = bundle_.tracks.first[t]; e < bundle_.tracks.first[t + 1]; ++e) {
+        const double error = bundle_.Error(e, bundle_.point[t]);
+        bundle_.agrees[e] = error >= 0.0 && error <= kTieThreshold ? 1 : 0;
+        n += bundle_.agrees[e] != 0 ? 1 : 0;
       }
-      if (n < 2) block_.has_point[t] = 0;
+      if (n < 2) bundle_.has_point[t] = 0;
     }
   }
 
@@ -201,9 +207,9 @@ class Adjuster {
     for (size_t i = 0; i < points_.size(); ++i) {
       ControlState& point = points_[i];
       point.error_m = point.error_sigma_m = point.left_out_error_m = point.left_out_sigma_m = Vector3d::Constant(kNan);
-      const uint32_t t = made_.TrackOfPoint(i);
-      if (block_.has_point[t] == 0) continue;
-      point.error_m = block_.point[t] - point.given;
+      const uint32_t t = marked_.TrackOfPoint(i);
+      if (bundle_.has_point[t] == 0) continue;
+      point.error_m = bundle_.point[t] - point.given;
       const KnownPoint known = point.Known(t);
       const std::optional<Matrix3d> covariance = accuracy.OfPoint(t, point.used ? &known : nullptr);
       if (covariance) {
@@ -212,7 +218,7 @@ class Adjuster {
         const Eigen::Array3d of_error = point.used ? Eigen::Array3d((given - of_point).max(0.0)) : Eigen::Array3d(given + of_point);
         point.error_sigma_m = of_error.sqrt();
         Matrix3d without;
-        const Vector3d own = KnownWeight(known, block_.point[t], kKnownLoss) * point.sigma_m.cwiseAbs2().cwiseInverse();
+        const Vector3d own = KnownWeight(known, bundle_.point[t], kKnownLoss) * point.sigma_m.cwiseAbs2().cwiseInverse();
         if (point.used && LeaveOut(point.error_m, *covariance, own, &point.left_out_error_m, &without)) {
           point.left_out_sigma_m = (without.diagonal().array() + given).sqrt();
         }
@@ -260,8 +266,8 @@ class Adjuster {
     }
   }
 
-  ControlBlock& made_;
-  Block& block_;
+  ControlBundle& marked_;
+  BundleProblem& bundle_;
   std::vector<ControlState>& points_;
   Vector3d* shift_;
   base::ThreadPool& threads_;
@@ -273,14 +279,14 @@ class Adjuster {
 
 }  // namespace
 
-ControlAdjustment AdjustWithControl(ControlBlock& made, std::vector<ControlState>& points, Vector3d* shift, base::ThreadPool& threads,
+ControlAdjustment AdjustWithControl(ControlBundle& marked, std::vector<ControlState>& points, Vector3d* shift, base::ThreadPool& threads,
                                     const std::function<void()>& on_iteration) {
-  return Adjuster(made, points, shift, threads, on_iteration).Run();
+  return Adjuster(marked, points, shift, threads, on_iteration).Run();
 }
 
-bool AdjustToFeatures(ControlBlock& made, base::ThreadPool& threads, const std::function<void()>& on_iteration) {
+bool AdjustToFeatures(ControlBundle& marked, base::ThreadPool& threads, const std::function<void()>& on_iteration) {
   std::vector<ControlState> no_points;
-  return Adjuster(made, no_points, nullptr, threads, on_iteration).RunByFeatures();
+  return Adjuster(marked, no_points, nullptr, threads, on_iteration).RunByFeatures();
 }
 
 bool LeaveOut(const Vector3d& error_m, const Matrix3d& covariance, const Vector3d& own_information, Vector3d* left_out_error_m,
@@ -296,26 +302,26 @@ bool LeaveOut(const Vector3d& error_m, const Matrix3d& covariance, const Vector3
   return left_out_error_m->allFinite() && (left_out_covariance->diagonal().array() > 0.0).all();
 }
 
-void PlaceUnusedPoints(ControlBlock& made, const std::vector<ControlState>& points, double threshold) {
+void PlaceUnusedPoints(ControlBundle& marked, const std::vector<ControlState>& points, double threshold) {
   for (size_t i = 0; i < points.size(); ++i) {
     if (points[i].used) continue;
-    TriangulateTrack(made.block, made.TrackOfPoint(i), threshold);
-    RefineByMarks(made.block, made.TrackOfPoint(i));
+    TriangulateTrack(marked.bundle, marked.TrackOfPoint(i), threshold);
+    RefineByMarks(marked.bundle, marked.TrackOfPoint(i));
   }
 }
 
-void JudgeUsedMarks(ControlBlock& made, const std::vector<ControlState>& points, double threshold) {
-  Block& block = made.block;
+void JudgeUsedMarks(ControlBundle& marked, const std::vector<ControlState>& points, double threshold) {
+  BundleProblem& bundle = marked.bundle;
   for (size_t i = 0; i < points.size(); ++i) {
     if (!points[i].used) continue;
-    const uint32_t t = made.TrackOfPoint(i);
+    const uint32_t t = marked.TrackOfPoint(i);
     int n = 0;
-    for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) {
-      const double error = block.Error(e, block.point[t]);
-      block.agrees[e] = error >= 0.0 && error <= threshold ? 1 : 0;
-      n += block.agrees[e];
+    for (uint32_t e = bundle.tracks.first[t]; e < bundle.tracks.first[t + 1]; ++e) {
+      const double error = bundle.Error(e, bundle.point[t]);
+      bundle.agrees[e] = error >= 0.0 && error <= threshold ? 1 : 0;
+      n += bundle.agrees[e];
     }
-    if (n < 2) block.has_point[t] = 0;
+    if (n < 2) bundle.has_point[t] = 0;
   }
 }
 

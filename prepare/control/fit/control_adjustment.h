@@ -1,4 +1,4 @@
-// Bundle adjustment of a block with control points, the search for wrong points and marks in it, and the accuracy of its result.
+// Bundle adjustment with control points, the search for wrong points and marks in it, and the accuracy of its result.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,25 +29,25 @@ struct ControlState {
 };
 
 struct ControlAdjustment {
-  bool ok = false;  // false: no solution; the block and the states are those from before
+  bool ok = false;  // false: no solution; the bundle and the states are those from before
   geo::PlaceAccuracy accuracy;
   // How far control points that are left out miss, over the accuracy of that; 1 as expected. Where it is larger, the accuracies have been multiplied
   // by it.
   double misfit = std::numeric_limits<double>::quiet_NaN();
 };
 
-// The block is in ENU about where it belongs, and used points have a place and agreeing marks. Points that then contradict the others lose `used`.
+// The bundle is in ENU about where it belongs, and used points have a place and agreeing marks. Points that then contradict the others lose `used`.
 // `shift`: see UseTagScatter; null without tags. Entries of marks agree afterwards where they are used, and points of the model have been placed
-// anew. Points without two marks that agree have no place (Block::has_point). `on_iteration` is called after each iteration of a bundle adjustment,
-// of which there are seldom more than kUsualIterations. Throws base::Interrupted.
-ControlAdjustment AdjustWithControl(ControlBlock& made, std::vector<ControlState>& points, Eigen::Vector3d* shift, base::ThreadPool& threads,
+// anew. Points without two marks that agree have no place (BundleProblem::has_point). `on_iteration` is called after each iteration of a bundle
+// adjustment, of which there are seldom more than kUsualIterations. Throws base::Interrupted.
+ControlAdjustment AdjustWithControl(ControlBundle& marked, std::vector<ControlState>& points, Eigen::Vector3d* shift, base::ThreadPool& threads,
                                     const std::function<void()>& on_iteration);
 constexpr int kUsualIterations = 60;
 
-// The same to the features alone, of a block without control points. Only positions of photos (BlockPhoto::gps) hold its frame. False: no solution;
-// the block is as before. Else the features' accuracy has been measured (ControlBlock::tie_sigma), points of the model have been placed anew, and
+// The same to the features alone, of a bundle without control points. Only positions of photos (BundlePhoto::gps) hold its frame. False: no solution;
+// the bundle is as before. Else the features' accuracy has been measured (ControlBundle::tie_sigma), points of the model have been placed anew, and
 // those that their photos do not agree about have no place.
-bool AdjustToFeatures(ControlBlock& made, base::ThreadPool& threads, const std::function<void()>& on_iteration);
+bool AdjustToFeatures(ControlBundle& marked, base::ThreadPool& threads, const std::function<void()>& on_iteration);
 // Sigmas of a feature's error that is no outlier.
 constexpr double kTieThreshold = 5.0;
 
@@ -57,9 +57,9 @@ bool LeaveOut(const Eigen::Vector3d& error_m, const Eigen::Matrix3d& covariance,
               Eigen::Vector3d* left_out_error_m, Eigen::Matrix3d* left_out_covariance);
 
 // Places the points that are not used anew by their marks.
-void PlaceUnusedPoints(ControlBlock& made, const std::vector<ControlState>& points, double threshold);
+void PlaceUnusedPoints(ControlBundle& marked, const std::vector<ControlState>& points, double threshold);
 // Marks of used points agree when they are within the threshold (units of lenses) of the point's place.
-void JudgeUsedMarks(ControlBlock& made, const std::vector<ControlState>& points, double threshold);
+void JudgeUsedMarks(ControlBundle& marked, const std::vector<ControlState>& points, double threshold);
 // The root mean square of the left-out errors over their accuracies, of the axes that the others determine; NaN for fewer than six of them.
 double MisfitOf(const std::vector<ControlState>& points);
 

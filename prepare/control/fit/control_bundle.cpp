@@ -15,8 +15,8 @@ struct TrackPixel {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };
 
-BlockLens LensFor(const camera::Camera& camera, bool* known) {
-  BlockLens lens;
+BundleLens LensFor(const camera::Camera& camera, bool* known) {
+  BundleLens lens;
   lens.camera = camera;
   const std::optional<Lens> numbers = LensOf(camera);
   if (!numbers) {
@@ -30,8 +30,8 @@ BlockLens LensFor(const camera::Camera& camera, bool* known) {
   return lens;
 }
 
-// Where the block's lens shows what the photo shows at `pixel`.
-std::optional<Eigen::Vector2d> PixelInBlock(const camera::Camera& camera, const BlockLens& lens, const Eigen::Vector2d& pixel) {
+// Where the bundle's lens shows what the photo shows at `pixel`.
+std::optional<Eigen::Vector2d> PixelInBundle(const camera::Camera& camera, const BundleLens& lens, const Eigen::Vector2d& pixel) {
   if (camera.model == lens.camera.model) return pixel;
   const Eigen::Vector3d ray = camera.RayFromImg(pixel);
   constexpr double kLeastDepth = 0.05;  // flatter rays are far outside of any picture without distortion
@@ -39,44 +39,45 @@ std::optional<Eigen::Vector2d> PixelInBlock(const camera::Camera& camera, const 
   return Project(lens.numbers, ray, nullptr);
 }
 
-class BlockMaker {
+class BundleBuilder {
  public:
-  explicit BlockMaker(const ControlJob& job) : job_(job) {}
+  explicit BundleBuilder(const ControlJob& job) : job_(job) {}
 
-  ControlBlock Make() {
+  ControlBundle Build() {
     for (const auto& [id, camera] : job_.model.cameras) {
-      lens_of_camera_.emplace(id, static_cast<int>(made_.block.lenses.size()));
-      made_.block.lenses.push_back(LensFor(camera, &made_.known_lenses));
+      lens_of_camera_.emplace(id, static_cast<int>(result_.bundle.lenses.size()));
+      result_.bundle.lenses.push_back(LensFor(camera, &result_.known_lenses));
     }
     for (const survey::ColmapImage& image : job_.model.images) {
-      BlockPhoto photo;
+      BundlePhoto photo;
       photo.cam_from_enu = image.cam_from_world.rotation.normalized();
       photo.centre = image.cam_from_world.OriginInSource();
       photo.placed = true;
       photo.lens = lens_of_camera_.at(image.camera_id);
-      made_.block.photos.push_back(photo);
+      result_.bundle.photos.push_back(photo);
     }
     AddTies();
-    made_.n_ties = made_.block.tracks.size();
+    result_.n_ties = result_.bundle.tracks.size();
     AddMarks();
-    made_.block.agrees.resize(made_.block.tracks.entries.size(), 0);
-    made_.block.sigma.assign(made_.block.tracks.entries.size(), 1.0);
-    made_.SetAccuracy(1.0, job_.mark_sigma_px);
-    return std::move(made_);
+    result_.bundle.agrees.resize(result_.bundle.tracks.entries.size(), 0);
+    result_.bundle.sigma.assign(result_.bundle.tracks.entries.size(), 1.0);
+    result_.SetAccuracy(1.0, job_.mark_sigma_px);
+    return std::move(result_);
   }
 
  private:
   std::optional<Eigen::Vector2d> PixelOf(uint32_t photo, const Eigen::Vector2d& pixel) const {
     const survey::ColmapImage& image = job_.model.images[photo];
-    return PixelInBlock(job_.model.cameras.at(image.camera_id), made_.block.lenses[static_cast<size_t>(made_.block.photos[photo].lens)], pixel);
+    return PixelInBundle(job_.model.cameras.at(image.camera_id), result_.bundle.lenses[static_cast<size_t>(result_.bundle.photos[photo].lens)],
+                         pixel);
   }
 
   void AddTrack(std::vector<TrackPixel>& pixels) {
     for (const TrackPixel& entry : pixels) {
-      made_.block.tracks.entries.push_back({entry.photo, 0});
-      made_.block.pixel.push_back(entry.pixel);
+      result_.bundle.tracks.entries.push_back({entry.photo, 0});
+      result_.bundle.pixel.push_back(entry.pixel);
     }
-    made_.block.tracks.first.push_back(static_cast<uint32_t>(made_.block.tracks.entries.size()));
+    result_.bundle.tracks.first.push_back(static_cast<uint32_t>(result_.bundle.tracks.entries.size()));
   }
 
   void AddTies() {
@@ -97,11 +98,11 @@ class BlockMaker {
     for (size_t i = 0; i < seen.size(); ++i) {
       if (seen[i].size() < 2) continue;
       AddTrack(seen[i]);
-      made_.point_of_tie.push_back(i);
-      made_.block.point.push_back(job_.model.points[i].x_in_world);
-      made_.block.has_point.push_back(1);
+      result_.point_of_tie.push_back(i);
+      result_.bundle.point.push_back(job_.model.points[i].x_in_world);
+      result_.bundle.has_point.push_back(1);
     }
-    made_.block.agrees.assign(made_.block.tracks.entries.size(), 1);
+    result_.bundle.agrees.assign(result_.bundle.tracks.entries.size(), 1);
   }
 
   void AddMarks() {
@@ -126,49 +127,49 @@ class BlockMaker {
       std::vector<std::optional<uint32_t>> entry_of_mark(point.marks.size());
       std::vector<TrackPixel> pixels;
       for (const Mark& mark : marks) {
-        entry_of_mark[mark.index] = static_cast<uint32_t>(made_.block.tracks.entries.size() + pixels.size());
+        entry_of_mark[mark.index] = static_cast<uint32_t>(result_.bundle.tracks.entries.size() + pixels.size());
         pixels.push_back(mark.at);
       }
       AddTrack(pixels);
-      made_.mark.push_back(std::move(entry_of_mark));
-      made_.block.point.push_back(Eigen::Vector3d::Zero());
-      made_.block.has_point.push_back(0);
+      result_.mark.push_back(std::move(entry_of_mark));
+      result_.bundle.point.push_back(Eigen::Vector3d::Zero());
+      result_.bundle.has_point.push_back(0);
     }
   }
 
   const ControlJob& job_;
-  ControlBlock made_;
+  ControlBundle result_;
   std::map<uint32_t, int> lens_of_camera_;
 };
 
 }  // namespace
 
-void ControlBlock::SetAccuracy(double new_tie_sigma, double new_mark_sigma_px) {
+void ControlBundle::SetAccuracy(double new_tie_sigma, double new_mark_sigma_px) {
   tie_sigma = new_tie_sigma;
   mark_sigma_px = new_mark_sigma_px;
-  for (BlockLens& lens : block.lenses) lens.unit_px = tie_sigma * lens.camera.width / kUnitWidth_px;
-  for (uint32_t e = block.tracks.first[n_ties]; e < block.tracks.entries.size(); ++e) {
-    const BlockPhoto& photo = block.photos[block.tracks.entries[e].photo];
-    block.sigma[e] = mark_sigma_px / block.lenses[static_cast<size_t>(photo.lens)].unit_px;
+  for (BundleLens& lens : bundle.lenses) lens.unit_px = tie_sigma * lens.camera.width / kUnitWidth_px;
+  for (uint32_t e = bundle.tracks.first[n_ties]; e < bundle.tracks.entries.size(); ++e) {
+    const BundlePhoto& photo = bundle.photos[bundle.tracks.entries[e].photo];
+    bundle.sigma[e] = mark_sigma_px / bundle.lenses[static_cast<size_t>(photo.lens)].unit_px;
   }
 }
 
-double ControlBlock::MarkThreshold(double times) const {
+double ControlBundle::MarkThreshold(double times) const {
   double unit_px = 0.0;
-  for (const BlockLens& lens : block.lenses) unit_px = std::max(unit_px, lens.unit_px);
+  for (const BundleLens& lens : bundle.lenses) unit_px = std::max(unit_px, lens.unit_px);
   return times * std::hypot(mark_sigma_px, unit_px) / unit_px;
 }
 
-void ControlBlock::Move(const geo::Similarity3d& b_from_a) {
-  for (BlockPhoto& photo : block.photos) {
+void ControlBundle::Move(const geo::Similarity3d& b_from_a) {
+  for (BundlePhoto& photo : bundle.photos) {
     photo.centre = b_from_a * photo.centre;
     photo.cam_from_enu = (photo.cam_from_enu * b_from_a.rotation.conjugate()).normalized();
   }
-  for (Eigen::Vector3d& point : block.point) point = b_from_a * point;
+  for (Eigen::Vector3d& point : bundle.point) point = b_from_a * point;
 }
 
-ControlBlock MakeControlBlock(const ControlJob& job) {
-  return BlockMaker(job).Make();
+ControlBundle MakeControlBundle(const ControlJob& job) {
+  return BundleBuilder(job).Build();
 }
 
 }  // namespace skyquilt::prepare

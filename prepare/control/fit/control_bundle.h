@@ -1,4 +1,4 @@
-// A COLMAP model with marks of control points as a block for the bundle adjustment.
+// A COLMAP model with marks of control points as a problem for the bundle adjustment.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace skyquilt::prepare {
 
-struct ControlBlock {
+struct ControlBundle {
   // Photos in the order of the model's images, lenses in that of its cameras. Tracks: those of the model's points, then one for each control point.
-  Block block;
+  BundleProblem bundle;
   size_t n_ties = 0;                                       // tracks of the model's points
   std::vector<size_t> point_of_tie;                        // per tie track, index into the model's points
   std::vector<std::vector<std::optional<uint32_t>>> mark;  // per control point and mark: its entry; nothing when its photo has no pose
@@ -32,6 +32,6 @@ struct ControlBlock {
 
 // The points of the model agree with all of their observations, control points have no place yet. Marks and features of photos with a lens that the
 // adjustment does not know are moved to where a lens without distortion would show them.
-ControlBlock MakeControlBlock(const ControlJob& job);
+ControlBundle MakeControlBundle(const ControlJob& job);
 
 }  // namespace skyquilt::prepare

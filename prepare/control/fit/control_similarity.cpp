@@ -8,6 +8,7 @@
 #include "core/base/order_statistics.h"
 #include "core/base/random.h"
 #include "core/linear/linear.h"
+#include "prepare/bundle/adjustment_accuracy.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -199,15 +200,6 @@ class TripleSearch {
 };
 
 }  // namespace
-
-Eigen::Matrix<double, 3, 7> SimilarityJacobian(const Vector3d& from_middle) {
-  Eigen::Matrix<double, 3, 7> jacobian;
-  const Vector3d& d = from_middle;
-  jacobian.leftCols<3>().setIdentity();
-  jacobian.middleCols<3>(3) << 0.0, d.z(), -d.y(), -d.z(), 0.0, d.x(), d.y(), -d.x(), 0.0;
-  jacobian.col(6) = d;
-  return jacobian;
-}
 
 Matrix3d ControlSimilarity::CovarianceAt(const Vector3d& x_in_enu) const {
   const Eigen::Matrix<double, 3, 7> jacobian = SimilarityJacobian(x_in_enu - middle);

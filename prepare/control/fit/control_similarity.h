@@ -37,7 +37,4 @@ struct ControlSimilarity {
 // (Rousseeuw, Least Median of Squares Regression, 1984).
 ControlSimilarity FitControlSimilarity(const std::vector<ControlPair>& pairs);
 
-// Derivatives of where a point gets by translation, rotation and log scale about a middle; `from_middle` is its place from there.
-Eigen::Matrix<double, 3, 7> SimilarityJacobian(const Eigen::Vector3d& from_middle);
-
 }  // namespace skyquilt::prepare

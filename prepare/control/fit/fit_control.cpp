@@ -9,6 +9,7 @@
 #include "core/base/order_statistics.h"
 #include "core/base/progress.h"
 #include "core/geo/enu_frame.h"
+#include "prepare/bundle/adjustment_accuracy.h"
 #include "prepare/bundle/entry_term.h"
 #include "prepare/bundle/triangulate.h"
 #include "prepare/control/fit/control_adjustment.h"
@@ -77,12 +78,12 @@ std::vector<ControlState> StatesOf(const ControlPoints& control, const geo::Geod
 
 class Fitter {
  public:
-  Fitter(const ControlJob& job, base::ThreadPool& threads) : job_(job), threads_(threads), made_(MakeControlBlock(job)), block_(made_.block) {}
+  Fitter(const ControlJob& job, base::ThreadPool& threads) : job_(job), threads_(threads), marked_(MakeControlBundle(job)), bundle_(marked_.bundle) {}
 
   PlacedByControl Run() {
     for (size_t i = 0; i < job_.control.points.size(); ++i) {
-      TriangulateTrack(block_, made_.TrackOfPoint(i), kRoughThreshold);
-      RefineByMarks(block_, made_.TrackOfPoint(i));
+      TriangulateTrack(bundle_, marked_.TrackOfPoint(i), kRoughThreshold);
+      RefineByMarks(bundle_, marked_.TrackOfPoint(i));
     }
     const bool any_control =
         std::any_of(job_.control.points.begin(), job_.control.points.end(), [](const ControlPoint& point) { return !point.check; });
@@ -97,9 +98,9 @@ class Fitter {
       states_[index[k]].used = similarity.agrees[k] != 0;
       states_[index[k]].contradicts = similarity.agrees[k] == 0;
     }
-    made_.Move(similarity.enu_from_model);
+    marked_.Move(similarity.enu_from_model);
     RecoverByMarks();
-    const std::vector<BlockPhoto> photos_before = block_.photos;
+    const std::vector<BundlePhoto> photos_before = bundle_.photos;
     PlacedByControl placed;
     placed.origin = origin;
     placed.scale = similarity.enu_from_model.scale;
@@ -108,15 +109,15 @@ class Fitter {
     NotAdjusted not_adjusted = WhyNotAdjusted();
     if (not_adjusted == NotAdjusted::kNo) {
       Vector3d shift = Vector3d::Zero();
-      const bool tagged = job_.use_tags && UseTagScatter(job_.stations, job_.image_of_station, frame, block_, &shift);
+      const bool tagged = job_.use_tags && UseTagScatter(job_.stations, job_.image_of_station, frame, bundle_, &shift);
       base::Progress progress("adjust to control points", kUsualIterations, "iterations");
-      adjustment = AdjustWithControl(made_, states_, tagged ? &shift : nullptr, threads_, [&] { progress.Advance(); });
+      adjustment = AdjustWithControl(marked_, states_, tagged ? &shift : nullptr, threads_, [&] { progress.Advance(); });
       progress.Finish();
       if (!adjustment.ok) not_adjusted = NotAdjusted::kNoSolution;
     }
     if (!adjustment.ok) adjustment = BySimilarity(similarity);
     placed.accuracy = adjustment.accuracy;
-    UpdateModel(made_, similarity.enu_from_model, photos_before, not_adjusted == NotAdjusted::kNo, job_.model);
+    UpdateModel(marked_, similarity.enu_from_model, photos_before, not_adjusted == NotAdjusted::kNo, job_.model);
     placed.fit = Report();
     placed.fit.placed = true;
     placed.fit.adjusted = not_adjusted == NotAdjusted::kNo;
@@ -129,34 +130,34 @@ class Fitter {
 
   // Metres, or units of the model, per pixel: mean over the agreeing marks.
   double GsdOf(size_t i) const {
-    const uint32_t t = made_.TrackOfPoint(i);
+    const uint32_t t = marked_.TrackOfPoint(i);
     double sum = 0.0;
     int n = 0;
-    for (uint32_t e = block_.tracks.first[t]; e < block_.tracks.first[t + 1]; ++e) {
-      if (block_.agrees[e] == 0) continue;
-      const BlockPhoto& photo = block_.photos[block_.tracks.entries[e].photo];
-      const double depth = (photo.cam_from_enu * (block_.point[t] - photo.centre)).z();
-      sum += depth / block_.lenses[static_cast<size_t>(photo.lens)].numbers[0];
+    for (uint32_t e = bundle_.tracks.first[t]; e < bundle_.tracks.first[t + 1]; ++e) {
+      if (bundle_.agrees[e] == 0) continue;
+      const BundlePhoto& photo = bundle_.photos[bundle_.tracks.entries[e].photo];
+      const double depth = (photo.cam_from_enu * (bundle_.point[t] - photo.centre)).z();
+      sum += depth / bundle_.lenses[static_cast<size_t>(photo.lens)].numbers[0];
       ++n;
     }
-    return n > 0 && block_.has_point[t] != 0 ? sum / n : kNan;
+    return n > 0 && bundle_.has_point[t] != 0 ? sum / n : kNan;
   }
 
   // Control points with a place in the model, and which they are.
   std::vector<ControlPair> Pairs(std::vector<size_t>* index) const {
     std::vector<ControlPair> pairs;
     for (size_t i = 0; i < states_.size(); ++i) {
-      const uint32_t t = made_.TrackOfPoint(i);
-      if (job_.control.points[i].check || block_.has_point[t] == 0) continue;
-      pairs.push_back({block_.point[t], states_[i].given, states_[i].sigma_m, GsdOf(i)});
+      const uint32_t t = marked_.TrackOfPoint(i);
+      if (job_.control.points[i].check || bundle_.has_point[t] == 0) continue;
+      pairs.push_back({bundle_.point[t], states_[i].given, states_[i].sigma_m, GsdOf(i)});
       index->push_back(i);
     }
     return pairs;
   }
 
   NotAdjusted WhyNotAdjusted() const {
-    if (!made_.known_lenses) return NotAdjusted::kUnknownLens;
-    return made_.n_ties < kLeastTies ? NotAdjusted::kNoObservations : NotAdjusted::kNo;
+    if (!marked_.known_lenses) return NotAdjusted::kUnknownLens;
+    return marked_.n_ties < kLeastTies ? NotAdjusted::kNoObservations : NotAdjusted::kNo;
   }
 
   // Three marks of which one is wrong may agree in pairs anywhere; the coordinates tell which two are right. Wrong coordinates do not agree with two
@@ -164,17 +165,17 @@ class Fitter {
   void RecoverByMarks() {
     for (size_t i = 0; i < states_.size(); ++i) {
       ControlState& state = states_[i];
-      const uint32_t t = made_.TrackOfPoint(i), first = block_.tracks.first[t], last = block_.tracks.first[t + 1];
+      const uint32_t t = marked_.TrackOfPoint(i), first = bundle_.tracks.first[t], last = bundle_.tracks.first[t + 1];
       if (job_.control.points[i].check || state.used || !state.HasHeight() || last - first < 3) continue;
       std::vector<char> agrees(last - first, 0);
       for (uint32_t e = first; e < last; ++e) {
-        const double error = block_.Error(e, state.given);
+        const double error = bundle_.Error(e, state.given);
         agrees[e - first] = error >= 0.0 && error <= 2.0 * kRoughThreshold ? 1 : 0;
       }
       if (std::count(agrees.begin(), agrees.end(), 1) < 2) continue;
-      std::copy(agrees.begin(), agrees.end(), block_.agrees.begin() + first);
-      block_.point[t] = state.given;
-      block_.has_point[t] = 1;
+      std::copy(agrees.begin(), agrees.end(), bundle_.agrees.begin() + first);
+      bundle_.point[t] = state.given;
+      bundle_.has_point[t] = 1;
       state.used = true;
       state.contradicts = false;
     }
@@ -182,16 +183,16 @@ class Fitter {
 
   // Errors and accuracies where the similarity is all there is. The refits without a point start anew, for they are cheap.
   ControlAdjustment BySimilarity(const ControlSimilarity& similarity) {
-    PlaceUnusedPoints(made_, states_, kRoughThreshold);
+    PlaceUnusedPoints(marked_, states_, kRoughThreshold);
     ControlAdjustment result;
     std::vector<ControlPair> agreeing;
     std::vector<size_t> agreeing_index;
     for (size_t i = 0; i < states_.size(); ++i) {
       if (!states_[i].used) continue;
-      agreeing.push_back({block_.point[made_.TrackOfPoint(i)], states_[i].given, states_[i].sigma_m, GsdOf(i)});
+      agreeing.push_back({bundle_.point[marked_.TrackOfPoint(i)], states_[i].given, states_[i].sigma_m, GsdOf(i)});
       agreeing_index.push_back(i);
     }
-    for (size_t i = 0; i < states_.size(); ++i) SetError(i, similarity.CovarianceAt(block_.point[made_.TrackOfPoint(i)]));
+    for (size_t i = 0; i < states_.size(); ++i) SetError(i, similarity.CovarianceAt(bundle_.point[marked_.TrackOfPoint(i)]));
     for (size_t k = 0; k < agreeing.size(); ++k) {
       std::vector<ControlPair> others = agreeing;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
@@ -200,7 +201,7 @@ class Fitter {
       ControlState& state = states_[agreeing_index[k]];
       const Vector3d x = without.enu_from_model * agreeing[k].in_model;
       state.left_out_error_m = x - state.given;
-      const auto of_marks = CovarianceByMarks(block_, made_.TrackOfPoint(agreeing_index[k]));
+      const auto of_marks = CovarianceByMarks(bundle_, marked_.TrackOfPoint(agreeing_index[k]));
       const Matrix3d covariance = without.CovarianceAt(x) + (of_marks ? *of_marks : Matrix3d::Zero());
       state.left_out_sigma_m = (covariance.diagonal() + state.sigma_m.cwiseAbs2()).cwiseSqrt();
       if (!state.HasHeight()) state.left_out_error_m.z() = state.left_out_sigma_m.z() = kNan;
@@ -219,10 +220,10 @@ class Fitter {
   // Of an estimate that the point's own coordinates hardly influence; `place` is the covariance of the frame there.
   void SetError(size_t i, const Matrix3d& place) {
     ControlState& state = states_[i];
-    const uint32_t t = made_.TrackOfPoint(i);
-    if (block_.has_point[t] == 0) return;
-    state.error_m = block_.point[t] - state.given;
-    if (const auto of_marks = CovarianceByMarks(block_, t)) {
+    const uint32_t t = marked_.TrackOfPoint(i);
+    if (bundle_.has_point[t] == 0) return;
+    state.error_m = bundle_.point[t] - state.given;
+    if (const auto of_marks = CovarianceByMarks(bundle_, t)) {
       state.error_sigma_m = ((place + *of_marks).diagonal() + state.sigma_m.cwiseAbs2()).cwiseSqrt();
     }
     if (!state.HasHeight()) state.error_m.z() = state.error_sigma_m.z() = kNan;
@@ -232,9 +233,9 @@ class Fitter {
   PlacedByControl Compare() {
     const PlaceWithoutControl& place = *job_.otherwise;
     states_ = StatesOf(job_.control, place.origin);
-    made_.Move(place.enu_from_model);
+    marked_.Move(place.enu_from_model);
     Vector3d middle = Vector3d::Zero();
-    for (const BlockPhoto& photo : block_.photos) middle += photo.centre / static_cast<double>(block_.photos.size());
+    for (const BundlePhoto& photo : bundle_.photos) middle += photo.centre / static_cast<double>(bundle_.photos.size());
     const geo::PlaceAccuracy& accuracy = place.accuracy;
     const auto square = [](double sigma) { return std::isfinite(sigma) ? sigma * sigma : 0.0; };
     constexpr double kRadians = std::numbers::pi / 180.0;
@@ -246,7 +247,7 @@ class Fitter {
     covariance(5, 5) = square(kRadians * accuracy.yaw_deg);
     covariance(6, 6) = square(0.01 * accuracy.scale_percent);
     for (size_t i = 0; i < states_.size(); ++i) {
-      const Eigen::Matrix<double, 3, 7> jacobian = SimilarityJacobian(block_.point[made_.TrackOfPoint(i)] - middle);
+      const Eigen::Matrix<double, 3, 7> jacobian = SimilarityJacobian(bundle_.point[marked_.TrackOfPoint(i)] - middle);
       SetError(i, jacobian * covariance * jacobian.transpose());
     }
     PlacedByControl compared;
@@ -260,7 +261,7 @@ class Fitter {
   PlacedByControl WithoutControl(SimilarityFailure failure) {
     std::vector<std::string> usable;
     for (size_t i = 0; i < states_.size(); ++i) {
-      const bool seen = block_.has_point[made_.TrackOfPoint(i)] != 0;
+      const bool seen = bundle_.has_point[marked_.TrackOfPoint(i)] != 0;
       if (!job_.control.points[i].check && states_[i].HasHeight() && seen) usable.push_back(job_.control.points[i].label);
     }
     const NoControl why = WhyNoControl(failure, usable);
@@ -273,7 +274,7 @@ class Fitter {
   }
 
   survey::ControlUse UseOf(size_t i) const {
-    if (block_.has_point[made_.TrackOfPoint(i)] == 0) return survey::ControlUse::kUnseen;
+    if (bundle_.has_point[marked_.TrackOfPoint(i)] == 0) return survey::ControlUse::kUnseen;
     if (states_[i].used) return survey::ControlUse::kControl;
     return states_[i].contradicts ? survey::ControlUse::kRejected : survey::ControlUse::kCheck;
   }
@@ -305,11 +306,11 @@ class Fitter {
         survey::ControlMarkFit mark;
         mark.photo = given.marks[k].photo;
         mark.pixel = given.marks[k].pixel;
-        if (const auto entry = made_.mark[i][k]; entry && seen) {
-          const double error = block_.Error(*entry, block_.point[made_.TrackOfPoint(i)]);
+        if (const auto entry = marked_.mark[i][k]; entry && seen) {
+          const double error = bundle_.Error(*entry, bundle_.point[marked_.TrackOfPoint(i)]);
           if (error >= 0.0)
-            mark.error_px = error * block_.lenses[static_cast<size_t>(block_.photos[block_.tracks.entries[*entry].photo].lens)].unit_px;
-          mark.used = error >= 0.0 && block_.agrees[*entry] != 0;
+            mark.error_px = error * bundle_.lenses[static_cast<size_t>(bundle_.photos[bundle_.tracks.entries[*entry].photo].lens)].unit_px;
+          mark.used = error >= 0.0 && bundle_.agrees[*entry] != 0;
         }
         if (mark.used) {
           squares += mark.error_px * mark.error_px;
@@ -325,8 +326,8 @@ class Fitter {
 
   const ControlJob& job_;
   base::ThreadPool& threads_;
-  ControlBlock made_;
-  Block& block_;
+  ControlBundle marked_;
+  BundleProblem& bundle_;
   std::vector<ControlState> states_;
 };
 

@@ -11,14 +11,14 @@ constexpr double kAgreeing = 6.0;
 
 // Open marks that agree with others when `control` has the pixels of one reading. `job.control` says which are open.
 size_t CountAgreeing(const ControlJob& job, const ControlPoints& control) {
-  ControlBlock made = MakeControlBlock(
+  ControlBundle marked = MakeControlBundle(
       {.model = job.model, .observations = job.observations, .stations = job.stations, .image_of_station = job.image_of_station, .control = control});
   size_t n = 0;
   for (size_t i = 0; i < control.points.size(); ++i) {
-    TriangulateTrack(made.block, made.TrackOfPoint(i), kAgreeing);
+    TriangulateTrack(marked.bundle, marked.TrackOfPoint(i), kAgreeing);
     for (size_t k = 0; k < control.points[i].marks.size(); ++k) {
-      const std::optional<uint32_t> entry = made.mark[i][k];
-      if (job.control.points[i].marks[k].if_upright && entry && made.block.agrees[*entry] != 0) ++n;
+      const std::optional<uint32_t> entry = marked.mark[i][k];
+      if (job.control.points[i].marks[k].if_upright && entry && marked.bundle.agrees[*entry] != 0) ++n;
     }
   }
   return n;

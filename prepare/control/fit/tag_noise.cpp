@@ -19,7 +19,7 @@ struct TaggedPhoto {
 
 // In the order of time where it is known.
 std::vector<TaggedPhoto> TaggedPhotos(const std::vector<Station>& stations, const std::vector<size_t>& image_of_station, const geo::EnuFrame& frame,
-                                      const Block& block) {
+                                      const BundleProblem& bundle) {
   std::vector<size_t> order(stations.size());
   std::iota(order.begin(), order.end(), size_t{0});
   const bool timed = std::all_of(stations.begin(), stations.end(), [](const Station& station) { return station.time_s.has_value(); });
@@ -33,10 +33,10 @@ std::vector<TaggedPhoto> TaggedPhotos(const std::vector<Station>& stations, cons
     TaggedPhoto one;
     one.photo = static_cast<uint32_t>(image_of_station[i]);
     one.tag = frame.EnuFromGeodetic(place);
-    one.difference = one.tag - block.photos[one.photo].centre;
+    one.difference = one.tag - bundle.photos[one.photo].centre;
     if (!one.tag.allFinite()) continue;
     if (!has_height) {
-      one.tag.z() = block.photos[one.photo].centre.z();
+      one.tag.z() = bundle.photos[one.photo].centre.z();
       one.difference.z() = std::numeric_limits<double>::quiet_NaN();
     }
     tagged.push_back(one);
@@ -69,9 +69,9 @@ AxisNoise NoiseOf(const std::vector<TaggedPhoto>& tagged, int axis) {
 
 }  // namespace
 
-bool UseTagScatter(const std::vector<Station>& stations, const std::vector<size_t>& image_of_station, const geo::EnuFrame& frame, Block& block,
-                   Eigen::Vector3d* shift) {
-  const std::vector<TaggedPhoto> tagged = TaggedPhotos(stations, image_of_station, frame, block);
+bool UseTagScatter(const std::vector<Station>& stations, const std::vector<size_t>& image_of_station, const geo::EnuFrame& frame,
+                   BundleProblem& bundle, Eigen::Vector3d* shift) {
+  const std::vector<TaggedPhoto> tagged = TaggedPhotos(stations, image_of_station, frame, bundle);
   if (tagged.size() < kLeastTags) return false;
   Eigen::Vector3d sigma;
   for (int axis = 0; axis < 3; ++axis) {
@@ -81,7 +81,7 @@ bool UseTagScatter(const std::vector<Station>& stations, const std::vector<size_
     sigma[axis] = noise.sigma_m;
   }
   for (const TaggedPhoto& one : tagged) {
-    BlockPhoto& photo = block.photos[one.photo];
+    BundlePhoto& photo = bundle.photos[one.photo];
     photo.gps = one.tag;
     photo.gps_sigma = sigma;
     if (!std::isfinite(one.difference.z())) photo.gps_sigma.z() = std::numeric_limits<double>::infinity();

@@ -6,8 +6,8 @@ namespace skyquilt::prepare {
 namespace {
 
 // Mean of where the photos that see a point carry it.
-Eigen::Vector3d CarriedByPhotos(const Eigen::Vector3d& x_in_enu, const std::vector<uint32_t>& photos, const std::vector<BlockPhoto>& before,
-                                const std::vector<BlockPhoto>& after) {
+Eigen::Vector3d CarriedByPhotos(const Eigen::Vector3d& x_in_enu, const std::vector<uint32_t>& photos, const std::vector<BundlePhoto>& before,
+                                const std::vector<BundlePhoto>& after) {
   if (photos.empty()) return x_in_enu;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const uint32_t i : photos) {
@@ -17,12 +17,12 @@ Eigen::Vector3d CarriedByPhotos(const Eigen::Vector3d& x_in_enu, const std::vect
 }
 
 // Mean reprojection error of the agreeing observations, pixels of the photos.
-double MeanError(const Block& block, uint32_t track) {
+double MeanError(const BundleProblem& bundle, uint32_t track) {
   double sum = 0.0;
   int n = 0;
-  for (uint32_t e = block.tracks.first[track]; e < block.tracks.first[track + 1]; ++e) {
-    if (block.agrees[e] == 0) continue;
-    sum += block.Error(e, block.point[track]) * block.lenses[static_cast<size_t>(block.photos[block.tracks.entries[e].photo].lens)].unit_px;
+  for (uint32_t e = bundle.tracks.first[track]; e < bundle.tracks.first[track + 1]; ++e) {
+    if (bundle.agrees[e] == 0) continue;
+    sum += bundle.Error(e, bundle.point[track]) * bundle.lenses[static_cast<size_t>(bundle.photos[bundle.tracks.entries[e].photo].lens)].unit_px;
     ++n;
   }
   return n > 0 ? sum / n : 0.0;
@@ -30,12 +30,12 @@ double MeanError(const Block& block, uint32_t track) {
 
 }  // namespace
 
-void UpdateModel(const ControlBlock& made, const geo::Similarity3d& enu_from_model, const std::vector<BlockPhoto>& photos_before, bool adjusted,
+void UpdateModel(const ControlBundle& marked, const geo::Similarity3d& enu_from_model, const std::vector<BundlePhoto>& photos_before, bool adjusted,
                  survey::ColmapModel& model) {
-  const Block& block = made.block;
+  const BundleProblem& bundle = marked.bundle;
   std::unordered_map<uint32_t, uint32_t> photo_of_image;
   for (uint32_t i = 0; i < model.images.size(); ++i) {
-    const BlockPhoto& photo = block.photos[i];
+    const BundlePhoto& photo = bundle.photos[i];
     model.images[i].cam_from_world = {photo.cam_from_enu, -(photo.cam_from_enu * photo.centre)};
     photo_of_image.emplace(model.images[i].id, i);
   }
@@ -46,17 +46,17 @@ void UpdateModel(const ControlBlock& made, const geo::Similarity3d& enu_from_mod
     for (const uint32_t id : point.image_ids) {
       if (const auto found = photo_of_image.find(id); found != photo_of_image.end()) photos.push_back(found->second);
     }
-    point.x_in_world = CarriedByPhotos(point.x_in_world, photos, photos_before, block.photos);
+    point.x_in_world = CarriedByPhotos(point.x_in_world, photos, photos_before, bundle.photos);
   }
   if (!adjusted) return;
-  for (uint32_t t = 0; t < made.n_ties; ++t) {
-    if (block.has_point[t] == 0) continue;
-    survey::ColmapPoint& point = model.points[made.point_of_tie[t]];
-    point.x_in_world = block.point[t];
-    point.error_px = MeanError(block, t);
+  for (uint32_t t = 0; t < marked.n_ties; ++t) {
+    if (bundle.has_point[t] == 0) continue;
+    survey::ColmapPoint& point = model.points[marked.point_of_tie[t]];
+    point.x_in_world = bundle.point[t];
+    point.error_px = MeanError(bundle, t);
   }
   size_t lens = 0;
-  for (auto& [id, camera] : model.cameras) camera = CameraOf(block.lenses[lens++].numbers, camera);
+  for (auto& [id, camera] : model.cameras) camera = CameraOf(bundle.lenses[lens++].numbers, camera);
 }
 
 }  // namespace skyquilt::prepare

@@ -9,10 +9,10 @@
 
 namespace skyquilt::prepare {
 
-// `made` was made from the model, moved by `enu_from_model` and then, with `photos_before` its photos at that moment, perhaps adjusted. Poses, lenses
-// and the points that the block has a place for are taken from it, and their reprojection errors computed anew; the other points move like the photos
-// that see them.
-void UpdateModel(const ControlBlock& made, const geo::Similarity3d& enu_from_model, const std::vector<BlockPhoto>& photos_before, bool adjusted,
+// `marked` was made from the model, moved by `enu_from_model` and then, with `photos_before` its photos at that moment, perhaps adjusted. Poses,
+// lenses and the points that the bundle has a place for are taken from it, and their reprojection errors computed anew; the other points move like
+// the photos that see them.
+void UpdateModel(const ControlBundle& marked, const geo::Similarity3d& enu_from_model, const std::vector<BundlePhoto>& photos_before, bool adjusted,
                  survey::ColmapModel& model);
 
 }  // namespace skyquilt::prepare

@@ -59,14 +59,14 @@ geo::Geodetic MiddleTag(const std::vector<geo::Geodetic>& tags) {
   });
 }
 
-void SetPlaces(const SeedInput& input, const std::vector<geo::Geodetic>& tags, std::vector<BlockPhoto>* photos) {
+void SetPlaces(const SeedInput& input, const std::vector<geo::Geodetic>& tags, std::vector<BundlePhoto>* photos) {
   const geo::EnuFrame frame(MiddleTag(tags));
   std::vector<double> heights;
   std::vector<char> has_height(input.photos.size(), 0);
   for (size_t i = 0; i < input.photos.size(); ++i) {
     const auto tag = UsableTag(input.photos[i]);
     if (!tag) continue;
-    BlockPhoto& photo = (*photos)[i];
+    BundlePhoto& photo = (*photos)[i];
     photo.gps = frame.EnuFromGeodetic(*tag);
     const double horizontal_m = std::max(input.photos[i].horizontal_sigma_m, kLeastHorizontal_m);
     photo.gps_sigma = Eigen::Vector3d(horizontal_m, horizontal_m, std::max(input.photos[i].vertical_sigma_m, kLeastVertical_m));
@@ -75,7 +75,7 @@ void SetPlaces(const SeedInput& input, const std::vector<geo::Geodetic>& tags, s
   }
   const double usual = heights.empty() ? 0.0 : base::Median(heights);
   for (size_t i = 0; i < photos->size(); ++i) {
-    BlockPhoto& photo = (*photos)[i];
+    BundlePhoto& photo = (*photos)[i];
     if (!photo.gps || has_height[i] != 0) continue;
     photo.gps->z() = usual;
     photo.gps_sigma.z() = kUnknownHeight_m;
@@ -84,7 +84,7 @@ void SetPlaces(const SeedInput& input, const std::vector<geo::Geodetic>& tags, s
 
 std::vector<Eigen::Vector3d> RaysOf(const SeedSurvey& survey, const IndexedPair& pair, size_t side, size_t step) {
   const uint32_t photo = side == 0 ? pair.a : pair.b;
-  const BlockLens& lens = survey.lenses[static_cast<size_t>(survey.photos[photo].lens)];
+  const BundleLens& lens = survey.lenses[static_cast<size_t>(survey.photos[photo].lens)];
   std::vector<Eigen::Vector3d> rays;
   rays.reserve(pair.features.size() / step + 1);
   for (size_t k = 0; k < pair.features.size(); k += step) {
@@ -211,14 +211,14 @@ std::vector<SeedStart> FindStarts(const SeedSurvey& survey, std::string* reason)
   return starts;
 }
 
-Block MakeBlock(const SeedSurvey& survey, const SeedStart& start, base::ThreadPool& threads) {
-  Block block;
-  block.photos = survey.photos;
-  block.lenses = survey.lenses;
-  for (size_t i = 0; i < block.photos.size(); ++i) {
+BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& start, base::ThreadPool& threads) {
+  BundleProblem bundle;
+  bundle.photos = survey.photos;
+  bundle.lenses = survey.lenses;
+  for (size_t i = 0; i < bundle.photos.size(); ++i) {
     const SeedView& view = start.views[i];
     if (!view.known) continue;
-    BlockPhoto& photo = block.photos[i];
+    BundlePhoto& photo = bundle.photos[i];
     photo.placed = true;
     photo.cam_from_enu = view.cam_from_enu;
     photo.centre = view.centre;
@@ -239,14 +239,14 @@ Block MakeBlock(const SeedSurvey& survey, const SeedStart& start, base::ThreadPo
   });
   std::vector<size_t> n_features;
   for (const SeedPhoto& photo : survey.input->photos) n_features.push_back(photo.features.size());
-  block.tracks = JoinMatches(pairs, n_features);
-  block.pixel.reserve(block.tracks.entries.size());
-  for (const TrackEntry& entry : block.tracks.entries)
-    block.pixel.push_back(survey.input->photos[entry.photo].features[entry.feature].cast<double>());
-  block.point.assign(block.tracks.size(), Eigen::Vector3d::Zero());
-  block.has_point.assign(block.tracks.size(), 0);
-  block.agrees.assign(block.tracks.entries.size(), 0);
-  return block;
+  bundle.tracks = JoinMatches(pairs, n_features);
+  bundle.pixel.reserve(bundle.tracks.entries.size());
+  for (const TrackEntry& entry : bundle.tracks.entries)
+    bundle.pixel.push_back(survey.input->photos[entry.photo].features[entry.feature].cast<double>());
+  bundle.point.assign(bundle.tracks.size(), Eigen::Vector3d::Zero());
+  bundle.has_point.assign(bundle.tracks.size(), 0);
+  bundle.agrees.assign(bundle.tracks.entries.size(), 0);
+  return bundle;
 }
 
 }  // namespace skyquilt::prepare

@@ -15,8 +15,8 @@ namespace skyquilt::prepare {
 // The input with indices in place of ids. Keeps a pointer to the input.
 struct SeedSurvey {
   const SeedInput* input = nullptr;
-  std::vector<BlockPhoto> photos;  // none placed; positions in ENU about the photo in the middle
-  std::vector<BlockLens> lenses;
+  std::vector<BundlePhoto> photos;  // none placed; positions in ENU about the photo in the middle
+  std::vector<BundleLens> lenses;
   std::vector<IndexedPair> pairs;  // without those of a photo with itself or with fewer than kLeastPairMatches matches
   std::vector<PairRays> rays;      // at most kMaxRays of each pair
 };
@@ -41,7 +41,7 @@ struct SeedStart {
 // why.
 std::vector<SeedStart> FindStarts(const SeedSurvey& survey, std::string* reason);
 
-// The block with these poses, and the tracks of the matches that move like the others of their pair.
-Block MakeBlock(const SeedSurvey& survey, const SeedStart& start, base::ThreadPool& threads);
+// The bundle with these poses, and the tracks of the matches that move like the others of their pair.
+BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& start, base::ThreadPool& threads);
 
 }  // namespace skyquilt::prepare

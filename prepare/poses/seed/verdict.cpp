@@ -22,33 +22,33 @@ struct Tally {
   std::vector<size_t> agreeing, possible;
 };
 
-Tally Count(const Block& block) {
-  Tally tally{std::vector<size_t>(block.photos.size(), 0), std::vector<size_t>(block.photos.size(), 0)};
-  for (uint32_t t = 0; t < block.tracks.size(); ++t) {
-    const uint32_t first = block.tracks.first[t], last = block.tracks.first[t + 1];
+Tally Count(const BundleProblem& bundle) {
+  Tally tally{std::vector<size_t>(bundle.photos.size(), 0), std::vector<size_t>(bundle.photos.size(), 0)};
+  for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
+    const uint32_t first = bundle.tracks.first[t], last = bundle.tracks.first[t + 1];
     size_t n_placed = 0;
-    for (uint32_t e = first; e < last; ++e) n_placed += block.photos[block.tracks.entries[e].photo].placed ? 1 : 0;
+    for (uint32_t e = first; e < last; ++e) n_placed += bundle.photos[bundle.tracks.entries[e].photo].placed ? 1 : 0;
     if (n_placed < 2) continue;
     for (uint32_t e = first; e < last; ++e) {
-      const uint32_t photo = block.tracks.entries[e].photo;
-      if (!block.photos[photo].placed) continue;
+      const uint32_t photo = bundle.tracks.entries[e].photo;
+      if (!bundle.photos[photo].placed) continue;
       ++tally.possible[photo];
-      tally.agreeing[photo] += block.agrees[e] != 0 ? 1 : 0;
+      tally.agreeing[photo] += bundle.agrees[e] != 0 ? 1 : 0;
     }
   }
   return tally;
 }
 
 // Numbers of common points of pairs of photos; the key is the first photo times 2^32 plus the second.
-std::unordered_map<uint64_t, size_t> SharedPoints(const Block& block) {
+std::unordered_map<uint64_t, size_t> SharedPoints(const BundleProblem& bundle) {
   std::unordered_map<uint64_t, size_t> shared;
   std::vector<uint32_t> seen;
-  for (uint32_t t = 0; t < block.tracks.size(); ++t) {
-    if (block.has_point[t] == 0) continue;
+  for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
+    if (bundle.has_point[t] == 0) continue;
     seen.clear();
-    for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) {
-      const uint32_t photo = block.tracks.entries[e].photo;
-      if (block.agrees[e] != 0 && block.photos[photo].placed) seen.push_back(photo);
+    for (uint32_t e = bundle.tracks.first[t]; e < bundle.tracks.first[t + 1]; ++e) {
+      const uint32_t photo = bundle.tracks.entries[e].photo;
+      if (bundle.agrees[e] != 0 && bundle.photos[photo].placed) seen.push_back(photo);
     }
     // The next few in the track: all pairs of a long one would take long.
     constexpr size_t kReach = 5;
@@ -59,36 +59,36 @@ std::unordered_map<uint64_t, size_t> SharedPoints(const Block& block) {
   return shared;
 }
 
-size_t KeepLargestGroup(Block& block) {
-  base::DisjointSets groups(block.photos.size());
-  for (const auto& [pair, n] : SharedPoints(block)) {
+size_t KeepLargestGroup(BundleProblem& bundle) {
+  base::DisjointSets groups(bundle.photos.size());
+  for (const auto& [pair, n] : SharedPoints(bundle)) {
     if (n < kLeastShared) continue;
     groups.Join(static_cast<uint32_t>(pair >> 32U), static_cast<uint32_t>(pair));
   }
-  std::vector<size_t> size(block.photos.size(), 0);
-  for (uint32_t i = 0; i < size.size(); ++i) size[groups.Root(i)] += block.photos[i].placed ? 1 : 0;
+  std::vector<size_t> size(bundle.photos.size(), 0);
+  for (uint32_t i = 0; i < size.size(); ++i) size[groups.Root(i)] += bundle.photos[i].placed ? 1 : 0;
   const auto largest = static_cast<uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
   size_t removed = 0;
   for (uint32_t i = 0; i < size.size(); ++i) {
-    if (!block.photos[i].placed || groups.Root(i) == largest) continue;
-    block.photos[i].placed = false;
+    if (!bundle.photos[i].placed || groups.Root(i) == largest) continue;
+    bundle.photos[i].placed = false;
     ++removed;
   }
   return removed;
 }
 
 // Per photo, the most tracks that it has in common with one placed photo.
-std::vector<size_t> MostCommonTracks(const Block& block) {
-  std::vector<std::unordered_map<uint32_t, size_t>> common(block.photos.size());
-  for (uint32_t t = 0; t < block.tracks.size(); ++t) {
-    const uint32_t first = block.tracks.first[t], last = block.tracks.first[t + 1];
+std::vector<size_t> MostCommonTracks(const BundleProblem& bundle) {
+  std::vector<std::unordered_map<uint32_t, size_t>> common(bundle.photos.size());
+  for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
+    const uint32_t first = bundle.tracks.first[t], last = bundle.tracks.first[t + 1];
     // The next few in the track, as above.
     constexpr uint32_t kReach = 5;
     for (uint32_t e = first; e < last; ++e) {
       for (uint32_t other = e + 1; other < std::min(last, e + 1 + kReach); ++other) {
-        const uint32_t a = block.tracks.entries[e].photo, b = block.tracks.entries[other].photo;
-        if (block.photos[b].placed) ++common[a][b];
-        if (block.photos[a].placed) ++common[b][a];
+        const uint32_t a = bundle.tracks.entries[e].photo, b = bundle.tracks.entries[other].photo;
+        if (bundle.photos[b].placed) ++common[a][b];
+        if (bundle.photos[a].placed) ++common[b][a];
       }
     }
   }
@@ -103,17 +103,17 @@ std::vector<size_t> MostCommonTracks(const Block& block) {
 }
 
 // Photos without a pose that hardly look like any placed photo, as those of another place: nobody else could place them.
-std::vector<char> FindStrangers(const Block& block) {
-  const std::vector<size_t> most = MostCommonTracks(block);
+std::vector<char> FindStrangers(const BundleProblem& bundle) {
+  const std::vector<size_t> most = MostCommonTracks(bundle);
   std::vector<double> usual;
   for (size_t i = 0; i < most.size(); ++i) {
-    if (block.photos[i].placed) usual.push_back(static_cast<double>(most[i]));
+    if (bundle.photos[i].placed) usual.push_back(static_cast<double>(most[i]));
   }
   std::vector<char> strange(most.size(), 0);
   if (usual.empty()) return strange;
   const double few = kStrangersShare * base::Median(std::move(usual));
   for (size_t i = 0; i < most.size(); ++i) {
-    strange[i] = !block.photos[i].placed && most[i] < kStrangersMatches && static_cast<double>(most[i]) < few ? 1 : 0;
+    strange[i] = !bundle.photos[i].placed && most[i] < kStrangersMatches && static_cast<double>(most[i]) < few ? 1 : 0;
   }
   // Many are a part of the survey that is not connected yet.
   const auto n_strange = static_cast<double>(std::count(strange.begin(), strange.end(), 1));
@@ -133,39 +133,39 @@ std::string Fixed(double value) {
 
 }  // namespace
 
-size_t RemoveContradicted(Block& block) {
-  const Tally tally = Count(block);
+size_t RemoveContradicted(BundleProblem& bundle) {
+  const Tally tally = Count(bundle);
   size_t removed = 0;
-  for (size_t i = 0; i < block.photos.size(); ++i) {
-    if (!block.photos[i].placed) continue;
+  for (size_t i = 0; i < bundle.photos.size(); ++i) {
+    if (!bundle.photos[i].placed) continue;
     const auto agreeing = static_cast<double>(tally.agreeing[i]), possible = static_cast<double>(tally.possible[i]);
     if (tally.agreeing[i] >= kLeastObservations && agreeing >= kLeastShare * possible) continue;
-    block.photos[i].placed = false;
+    bundle.photos[i].placed = false;
     ++removed;
   }
-  return removed + KeepLargestGroup(block);
+  return removed + KeepLargestGroup(bundle);
 }
 
-Verdict Judge(const Block& block, double height_m) {
+Verdict Judge(const BundleProblem& bundle, double height_m) {
   Verdict verdict;
-  std::vector<size_t> n_entries(block.photos.size(), 0);
-  for (const TrackEntry& entry : block.tracks.entries) ++n_entries[entry.photo];
-  const std::vector<char> strange = FindStrangers(block);
+  std::vector<size_t> n_entries(bundle.photos.size(), 0);
+  for (const TrackEntry& entry : bundle.tracks.entries) ++n_entries[entry.photo];
+  const std::vector<char> strange = FindStrangers(bundle);
   std::vector<double> off_m;
-  for (size_t i = 0; i < block.photos.size(); ++i) {
-    const BlockPhoto& photo = block.photos[i];
+  for (size_t i = 0; i < bundle.photos.size(); ++i) {
+    const BundlePhoto& photo = bundle.photos[i];
     verdict.n_matched += n_entries[i] >= kLeastObservations && strange[i] == 0 ? 1 : 0;
     verdict.n_placed += photo.placed ? 1 : 0;
     if (photo.placed && photo.gps) off_m.push_back((photo.centre - *photo.gps).head<2>().norm());
   }
   std::vector<double> errors;
-  for (uint32_t t = 0; t < block.tracks.size(); ++t) {
-    if (block.has_point[t] == 0) continue;
-    for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) {
-      if (block.agrees[e] != 0) errors.push_back(block.Error(e, block.point[t]));
+  for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
+    if (bundle.has_point[t] == 0) continue;
+    for (uint32_t e = bundle.tracks.first[t]; e < bundle.tracks.first[t + 1]; ++e) {
+      if (bundle.agrees[e] != 0) errors.push_back(bundle.Error(e, bundle.point[t]));
     }
   }
-  const Tally tally = Count(block);
+  const Tally tally = Count(bundle);
   const auto n_possible = static_cast<double>(std::accumulate(tally.possible.begin(), tally.possible.end(), size_t{0}));
   const auto n_agreeing = static_cast<double>(std::accumulate(tally.agreeing.begin(), tally.agreeing.end(), size_t{0}));
   verdict.share_agreeing = n_possible > 0.0 ? n_agreeing / n_possible : 0.0;

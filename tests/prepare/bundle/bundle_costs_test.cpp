@@ -61,7 +61,7 @@ void ExpectDerivatives(const ceres::CostFunction& cost, std::vector<std::vector<
       for (size_t r = 0; r < n_residuals; ++r) {
         const double expected = (side[0][r] - side[1][r]) / (2.0 * step);
         EXPECT_NEAR(jacobians[k][r * at.size() + column], expected, 1e-5 * std::max(1.0, std::abs(expected)))
-            << "block " << k << ", row " << r << ", column " << column;
+            << "bundle " << k << ", row " << r << ", column " << column;
       }
     }
   }

@@ -52,31 +52,31 @@ RC_GTEST_PROP(JoinMatches, NoTrackShowsAPhotoTwice, ()) {
 // The adjustment stays linear in the number of photos, however many tracks there are.
 TEST(ChooseTracks, BoundsTheObservationsOfEachPhoto) {
   constexpr uint32_t kPhotos = 10;
-  Block block;
-  block.lenses.resize(1);
-  block.lenses[0].camera = {camera::CameraModel::kPinhole, 1600, 1200, {1200.0, 1200.0, 800.0, 600.0}};
-  block.photos.resize(kPhotos);
+  BundleProblem bundle;
+  bundle.lenses.resize(1);
+  bundle.lenses[0].camera = {camera::CameraModel::kPinhole, 1600, 1200, {1200.0, 1200.0, 800.0, 600.0}};
+  bundle.photos.resize(kPhotos);
   base::Random random(4);
   for (uint32_t t = 0; t < 20000; ++t) {
     const uint32_t start = random.Below(kPhotos - 4), length = 2 + random.Below(4);
     for (uint32_t k = 0; k < length && start + k < kPhotos; ++k) {
-      block.tracks.entries.push_back({start + k, t});
-      block.pixel.push_back({random.Uniform(0.0, 1600.0), random.Uniform(0.0, 1200.0)});
+      bundle.tracks.entries.push_back({start + k, t});
+      bundle.pixel.push_back({random.Uniform(0.0, 1600.0), random.Uniform(0.0, 1200.0)});
     }
-    block.tracks.first.push_back(static_cast<uint32_t>(block.tracks.entries.size()));
+    bundle.tracks.first.push_back(static_cast<uint32_t>(bundle.tracks.entries.size()));
   }
-  const std::vector<char> all(block.tracks.size(), 1), counts(block.tracks.entries.size(), 1);
-  const std::vector<uint32_t> chosen = ChooseTracks(block, all, counts, 320);
+  const std::vector<char> all(bundle.tracks.size(), 1), counts(bundle.tracks.entries.size(), 1);
+  const std::vector<uint32_t> chosen = ChooseTracks(bundle, all, counts, 320);
   std::vector<size_t> n(kPhotos, 0);
   for (const uint32_t t : chosen) {
-    for (uint32_t e = block.tracks.first[t]; e < block.tracks.first[t + 1]; ++e) ++n[block.tracks.entries[e].photo];
+    for (uint32_t e = bundle.tracks.first[t]; e < bundle.tracks.first[t + 1]; ++e) ++n[bundle.tracks.entries[e].photo];
   }
   for (const size_t count : n) {
     EXPECT_GE(count, 240U);  // kLeastFilled, at the ends of the strip
     EXPECT_LE(count, 900U);
   }
   EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
-  EXPECT_TRUE(ChooseTracks(block, std::vector<char>(block.tracks.size(), 0), counts, 320).empty());
+  EXPECT_TRUE(ChooseTracks(bundle, std::vector<char>(bundle.tracks.size(), 0), counts, 320).empty());
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-struct Block {
+struct GridModel {
   survey::ColmapModel model;
   survey::ColmapObservations observations;
   double K1Sigma() const { return MeasureLensAccuracy(model, observations, 1).k1_sigma; }
@@ -23,10 +23,10 @@ struct Block {
 
 // `side` x `side` photos 15 m apart, 50 m above ground with `relief_m` of random height, looking straight down except that every third leans by
 // `lean_deg`. Points every `spacing_m`; pixels with normal noise.
-Block MakeBlock(const camera::Camera& camera, int side, double lean_deg, double relief_m, double spacing_m, double noise_px) {
-  Block block;
+GridModel MakeGrid(const camera::Camera& camera, int side, double lean_deg, double relief_m, double spacing_m, double noise_px) {
+  GridModel grid;
   base::Random random(5);
-  block.model.cameras[1] = camera;
+  grid.model.cameras[1] = camera;
   for (int i = 0; i < side * side; ++i) {
     survey::ColmapImage image;
     image.id = static_cast<uint32_t>(i + 1);
@@ -38,24 +38,24 @@ Block MakeBlock(const camera::Camera& camera, int side, double lean_deg, double 
     const Eigen::Vector3d axis(std::cos(2.0 * i), std::sin(2.0 * i), 0.0);
     image.cam_from_world.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(lean, axis)) * Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0);
     image.cam_from_world.translation = -(image.cam_from_world.rotation * centre);
-    block.model.images.push_back(image);
-    block.observations[image.id] = {};
+    grid.model.images.push_back(image);
+    grid.observations[image.id] = {};
   }
   const double size = 15.0 * side + 30.0;
   for (double x = -40.0; x < size; x += spacing_m) {
     for (double y = -40.0; y < size; y += spacing_m) {
       survey::ColmapPoint point;
-      point.id = block.model.points.size() + 100;
+      point.id = grid.model.points.size() + 100;
       point.x_in_world = Eigen::Vector3d(x, y, relief_m * random.Normal());
-      for (const survey::ColmapImage& image : block.model.images) {
+      for (const survey::ColmapImage& image : grid.model.images) {
         const auto pixel = camera.ImgFromCam(image.cam_from_world * point.x_in_world);
         if (!pixel || (pixel->array() < 0.0).any() || pixel->x() > camera.width || pixel->y() > camera.height) continue;
-        block.observations[image.id].push_back({point.id, *pixel + noise_px * Eigen::Vector2d{random.Normal(), random.Normal()}});
+        grid.observations[image.id].push_back({point.id, *pixel + noise_px * Eigen::Vector2d{random.Normal(), random.Normal()}});
       }
-      block.model.points.push_back(point);
+      grid.model.points.push_back(point);
     }
   }
-  return block;
+  return grid;
 }
 
 camera::Camera SimpleRadial() {
@@ -63,34 +63,34 @@ camera::Camera SimpleRadial() {
 }
 
 // Standard deviation of k1 by the whole matrix of derivatives, its pseudo-inverse and nothing else.
-double DenseSigma(const Block& block, const std::vector<size_t>& free, size_t k1_index) {
+double DenseSigma(const GridModel& grid, const std::vector<size_t>& free, size_t k1_index) {
   struct Row {
     size_t image, point;
     Eigen::Vector2d pixel;
   };
   std::vector<Row> rows;
   std::vector<size_t> used;  // points seen by at least three photos
-  for (size_t p = 0; p < block.model.points.size(); ++p) {
+  for (size_t p = 0; p < grid.model.points.size(); ++p) {
     std::vector<Row> of_point;
-    for (size_t i = 0; i < block.model.images.size(); ++i) {
-      for (const survey::ColmapObservation& o : block.observations.at(block.model.images[i].id)) {
-        if (o.point_id == block.model.points[p].id) of_point.push_back({i, used.size(), o.pixel});
+    for (size_t i = 0; i < grid.model.images.size(); ++i) {
+      for (const survey::ColmapObservation& o : grid.observations.at(grid.model.images[i].id)) {
+        if (o.point_id == grid.model.points[p].id) of_point.push_back({i, used.size(), o.pixel});
       }
     }
     if (of_point.size() < 3) continue;
     used.push_back(p);
     rows.insert(rows.end(), of_point.begin(), of_point.end());
   }
-  const size_t n_images = block.model.images.size();
+  const size_t n_images = grid.model.images.size();
   const size_t n_unknowns = 6 * n_images + free.size() + 3 * used.size();
   const auto project = [&](const Row& row, const Eigen::VectorXd& x) {
-    const geo::Rigid3d& pose = block.model.images[row.image].cam_from_world;
-    camera::Camera camera = block.model.cameras.at(1);
+    const geo::Rigid3d& pose = grid.model.images[row.image].cam_from_world;
+    camera::Camera camera = grid.model.cameras.at(1);
     for (size_t k = 0; k < free.size(); ++k) camera.params[free[k]] += x[static_cast<Index>(6 * n_images + k)];
     const Eigen::Vector3d turn = x.segment<3>(static_cast<Index>(6 * row.image));
     const Eigen::Vector3d shift = x.segment<3>(static_cast<Index>(6 * row.image + 3));
     const Eigen::Vector3d point =
-        block.model.points[used[row.point]].x_in_world + x.segment<3>(static_cast<Index>(6 * n_images + free.size() + 3 * row.point));
+        grid.model.points[used[row.point]].x_in_world + x.segment<3>(static_cast<Index>(6 * n_images + free.size() + 3 * row.point));
     const Eigen::Matrix3d rotation =
         turn.norm() > 0.0 ? Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() : Eigen::Matrix3d::Identity();
     return camera.ImgFromCam(rotation * (pose.rotation * point) + pose.translation + shift).value();
@@ -121,22 +121,22 @@ double DenseSigma(const Block& block, const std::vector<size_t>& free, size_t k1
 }
 
 TEST(IntrinsicsSigma, IsThatOfTheWholeAdjustment) {
-  const Block simple = MakeBlock(SimpleRadial(), 3, 15.0, 3.0, 9.0, 0.5);
+  const GridModel simple = MakeGrid(SimpleRadial(), 3, 15.0, 3.0, 9.0, 0.5);
   EXPECT_NEAR(simple.K1Sigma() / DenseSigma(simple, {0, 3}, 3), 1.0, 1e-6);
   // A principal point off the middle was adjusted too.
   camera::Camera opencv{camera::CameraModel::kOpencv, 1000, 800, {900.0, 905.0, 503.0, 396.0, -0.03, 0.01, 1e-3, -2e-3}};
-  const Block all = MakeBlock(opencv, 3, 15.0, 3.0, 9.0, 0.5);
+  const GridModel all = MakeGrid(opencv, 3, 15.0, 3.0, 9.0, 0.5);
   EXPECT_NEAR(all.K1Sigma() / DenseSigma(all, {0, 1, 2, 3, 4, 5, 6, 7}, 4), 1.0, 1e-6);
   camera::Camera fisheye{camera::CameraModel::kOpencvFisheye, 1000, 800, {900.0, 905.0, 500.0, 400.0, -0.03, 0.01, 1e-3, -2e-3}};
-  const Block theta = MakeBlock(fisheye, 3, 15.0, 3.0, 9.0, 0.5);
+  const GridModel theta = MakeGrid(fisheye, 3, 15.0, 3.0, 9.0, 0.5);
   EXPECT_NEAR(theta.K1Sigma() / DenseSigma(theta, {0, 1, 4, 5, 6, 7}, 4), 1.0, 1e-6);
   camera::Camera radial_fisheye{camera::CameraModel::kRadialFisheye, 1000, 800, {900.0, 500.0, 400.0, -0.03, 0.01}};
-  const Block two = MakeBlock(radial_fisheye, 3, 15.0, 3.0, 9.0, 0.5);
+  const GridModel two = MakeGrid(radial_fisheye, 3, 15.0, 3.0, 9.0, 0.5);
   EXPECT_NEAR(two.K1Sigma() / DenseSigma(two, {0, 3, 4}, 3), 1.0, 1e-6);
 }
 
 TEST(IntrinsicsSigma, FlatNadirFlightsDetermineTheLensWorse) {
-  const auto sigma = [](double lean_deg) { return MakeBlock(SimpleRadial(), 6, lean_deg, 0.0, 5.0, 0.5).K1Sigma(); };
+  const auto sigma = [](double lean_deg) { return MakeGrid(SimpleRadial(), 6, lean_deg, 0.0, 5.0, 0.5).K1Sigma(); };
   const double oblique = sigma(20.0);
   const double nearly_nadir = sigma(2.0);
   EXPECT_GT(nearly_nadir, 8.0 * oblique);
@@ -148,82 +148,82 @@ TEST(IntrinsicsSigma, FlatNadirFlightsDetermineTheLensWorse) {
 }
 
 TEST(IntrinsicsSigma, DoesNotDependOnTheFrame) {
-  Block block = MakeBlock(SimpleRadial(), 4, 10.0, 2.0, 8.0, 0.5);
-  const double before = block.K1Sigma();
+  GridModel grid = MakeGrid(SimpleRadial(), 4, 10.0, 2.0, 8.0, 0.5);
+  const double before = grid.K1Sigma();
   const geo::Similarity3d other{0.02, Eigen::Quaterniond(0.6, -0.3, 0.5, 0.2).normalized(), Eigen::Vector3d(3.0, -2.0, 10.0)};
-  for (survey::ColmapImage& image : block.model.images) image.cam_from_world = geo::TransformCameraWorld(image.cam_from_world, other);
-  for (survey::ColmapPoint& point : block.model.points) point.x_in_world = other * point.x_in_world;
-  EXPECT_NEAR(block.K1Sigma() / before, 1.0, 1e-6);
+  for (survey::ColmapImage& image : grid.model.images) image.cam_from_world = geo::TransformCameraWorld(image.cam_from_world, other);
+  for (survey::ColmapPoint& point : grid.model.points) point.x_in_world = other * point.x_in_world;
+  EXPECT_NEAR(grid.K1Sigma() / before, 1.0, 1e-6);
 }
 
 TEST(IntrinsicsSigma, GrowsWithTheNoise) {
   const LensAccuracy little = [] {
-    const Block block = MakeBlock(SimpleRadial(), 4, 10.0, 2.0, 8.0, 0.2);
-    return MeasureLensAccuracy(block.model, block.observations, 1);
+    const GridModel grid = MakeGrid(SimpleRadial(), 4, 10.0, 2.0, 8.0, 0.2);
+    return MeasureLensAccuracy(grid.model, grid.observations, 1);
   }();
-  const Block block = MakeBlock(SimpleRadial(), 4, 10.0, 2.0, 8.0, 0.8);
-  const LensAccuracy much = MeasureLensAccuracy(block.model, block.observations, 1);
+  const GridModel grid = MakeGrid(SimpleRadial(), 4, 10.0, 2.0, 8.0, 0.8);
+  const LensAccuracy much = MeasureLensAccuracy(grid.model, grid.observations, 1);
   EXPECT_NEAR(much.k1_sigma / little.k1_sigma, 4.0, 0.01);
   EXPECT_NEAR(much.sigma0_px / little.sigma0_px, 4.0, 0.01);
   EXPECT_EQ(much.n_photos, 16);
 }
 
 TEST(IntrinsicsSigma, IsUnknownWhenNothingCanBeSaid) {
-  const auto unknown = [](const Block& block) { return std::isnan(block.K1Sigma()); };
-  EXPECT_FALSE(unknown(MakeBlock(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.5)));
+  const auto unknown = [](const GridModel& grid) { return std::isnan(grid.K1Sigma()); };
+  EXPECT_FALSE(unknown(MakeGrid(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.5)));
   // Projections of the points, not measurements.
-  EXPECT_TRUE(unknown(MakeBlock(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.0)));
+  EXPECT_TRUE(unknown(MakeGrid(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.0)));
   // No distortion that was adjusted.
-  EXPECT_TRUE(unknown(MakeBlock({camera::CameraModel::kPinhole, 1000, 800, {900.0, 900.0, 500.0, 400.0}}, 3, 10.0, 2.0, 10.0, 0.5)));
-  EXPECT_TRUE(unknown(MakeBlock({camera::CameraModel::kSimpleRadial, 1000, 800, {900.0, 500.0, 400.0, 0.0}}, 3, 10.0, 2.0, 10.0, 0.5)));
-  EXPECT_TRUE(unknown(MakeBlock(SimpleRadial(), 1, 0.0, 2.0, 10.0, 0.5)));
-  Block block = MakeBlock(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.5);
-  EXPECT_TRUE(std::isnan(MeasureLensAccuracy(block.model, block.observations, 2).k1_sigma));
-  block.model.points.clear();
-  EXPECT_TRUE(unknown(block));
-  block = MakeBlock(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.5);
-  block.observations.clear();
-  EXPECT_TRUE(unknown(block));
+  EXPECT_TRUE(unknown(MakeGrid({camera::CameraModel::kPinhole, 1000, 800, {900.0, 900.0, 500.0, 400.0}}, 3, 10.0, 2.0, 10.0, 0.5)));
+  EXPECT_TRUE(unknown(MakeGrid({camera::CameraModel::kSimpleRadial, 1000, 800, {900.0, 500.0, 400.0, 0.0}}, 3, 10.0, 2.0, 10.0, 0.5)));
+  EXPECT_TRUE(unknown(MakeGrid(SimpleRadial(), 1, 0.0, 2.0, 10.0, 0.5)));
+  GridModel grid = MakeGrid(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.5);
+  EXPECT_TRUE(std::isnan(MeasureLensAccuracy(grid.model, grid.observations, 2).k1_sigma));
+  grid.model.points.clear();
+  EXPECT_TRUE(unknown(grid));
+  grid = MakeGrid(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.5);
+  grid.observations.clear();
+  EXPECT_TRUE(unknown(grid));
   EXPECT_TRUE(unknown({}));
   // All photos at one place: points have no depth.
-  block = MakeBlock(SimpleRadial(), 3, 0.0, 0.0, 10.0, 0.5);
-  for (survey::ColmapImage& image : block.model.images) image.cam_from_world = block.model.images[4].cam_from_world;
-  EXPECT_FALSE(std::isinf(block.K1Sigma()));
+  grid = MakeGrid(SimpleRadial(), 3, 0.0, 0.0, 10.0, 0.5);
+  for (survey::ColmapImage& image : grid.model.images) image.cam_from_world = grid.model.images[4].cam_from_world;
+  EXPECT_FALSE(std::isinf(grid.K1Sigma()));
 }
 
-TEST(AdjustmentBlock, TakesPhotosFromTheMiddleAndPointsEvenly) {
-  const Block block = MakeBlock(SimpleRadial(), 6, 0.0, 2.0, 5.0, 0.5);
-  const AdjustmentBlock whole = SelectBlock(block.model, block.observations, 1, 100, 100000);
+TEST(CameraSample, TakesPhotosFromTheMiddleAndPointsEvenly) {
+  const GridModel grid = MakeGrid(SimpleRadial(), 6, 0.0, 2.0, 5.0, 0.5);
+  const CameraSample whole = SelectSample(grid.model, grid.observations, 1, 100, 100000);
   EXPECT_EQ(whole.cam_from_world.size(), 36U);
   EXPECT_EQ(whole.share_of_points, 1.0);
-  const AdjustmentBlock part = SelectBlock(block.model, block.observations, 1, 20, 100);
+  const CameraSample part = SelectSample(grid.model, grid.observations, 1, 20, 100);
   EXPECT_EQ(part.cam_from_world.size(), 20U);
-  EXPECT_EQ(part.cam_from_world.front().translation, block.model.images[8].cam_from_world.translation);
+  EXPECT_EQ(part.cam_from_world.front().translation, grid.model.images[8].cam_from_world.translation);
   EXPECT_LE(part.points.size(), 100U);
   EXPECT_GT(part.points.size(), 90U);
   EXPECT_LT(part.share_of_points, 0.5);
 }
 
-TEST(AdjustmentBlock, KeepsTheLargestConnectedGroup) {
-  Block block = MakeBlock(SimpleRadial(), 4, 0.0, 2.0, 5.0, 0.5);
+TEST(CameraSample, KeepsTheLargestConnectedGroup) {
+  GridModel grid = MakeGrid(SimpleRadial(), 4, 0.0, 2.0, 5.0, 0.5);
   // The first three photos see points of their own, the fourth sees nothing.
-  const size_t n_points = block.model.points.size();
+  const size_t n_points = grid.model.points.size();
   for (size_t p = 0; p < n_points; ++p) {
-    survey::ColmapPoint point = block.model.points[p];
+    survey::ColmapPoint point = grid.model.points[p];
     point.id += 100000;
-    block.model.points.push_back(point);
+    grid.model.points.push_back(point);
   }
   for (uint32_t id = 1; id <= 3; ++id) {
-    for (survey::ColmapObservation& o : block.observations[id]) o.point_id += 100000;
+    for (survey::ColmapObservation& o : grid.observations[id]) o.point_id += 100000;
   }
-  block.observations[4].clear();
-  const AdjustmentBlock selected = SelectBlock(block.model, block.observations, 1, 100, 100000);
+  grid.observations[4].clear();
+  const CameraSample selected = SelectSample(grid.model, grid.observations, 1, 100, 100000);
   EXPECT_EQ(selected.cam_from_world.size(), 12U);
-  for (const BlockPoint& point : selected.points) {
+  for (const SamplePoint& point : selected.points) {
     ASSERT_GE(point.sightings.size(), 3U);
     for (const Sighting& sighting : point.sightings) ASSERT_LT(sighting.photo, 12);
   }
-  EXPECT_TRUE(std::isfinite(block.K1Sigma()));
+  EXPECT_TRUE(std::isfinite(grid.K1Sigma()));
 }
 
 }  // namespace

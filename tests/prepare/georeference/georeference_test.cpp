@@ -27,7 +27,7 @@ std::vector<Eigen::Vector3d> Points(const test::Flight& flight) {
   return points;
 }
 
-Georeference Place(const test::Flight& flight, const PrepareOptions& options = {}) {
+Georeference Place(const test::Flight& flight, const PlaceOptions& options = {}) {
   return PlaceOnEarth(Stations(flight), Points(flight), options);
 }
 
@@ -124,7 +124,7 @@ TEST(Georeference, FlightsThatDisagreeGetOneOffsetEach) {
   EXPECT_EQ(result.fit.n_inliers, 20);
   EXPECT_LT(result.fit.rmse_m, 0.05);
 
-  PrepareOptions off;
+  PlaceOptions off;
   off.flight_offsets = "off";
   const Georeference without = Place(flight, off);
   EXPECT_TRUE(without.fit.flight_vertical_offset_m.empty());

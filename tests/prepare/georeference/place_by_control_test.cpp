@@ -54,7 +54,7 @@ TEST(PlaceByControl, WithoutAFileNothingChanges) {
   std::vector<prepare::Station> stations;
   prepare::Georeference georeference;
   georeference.ok = true;
-  const prepare::PrepareOptions options;
+  const prepare::PlaceOptions options;
   const survey::ControlFit fit = prepare::PlaceByControl({options, {}, {}, {}}, model, stations, georeference, threads);
   EXPECT_TRUE(fit.points.empty());
   EXPECT_TRUE(georeference.ok);

@@ -28,21 +28,21 @@ constexpr size_t kK1 = 4;  // of a Lens
 // The same photos with another k1: what a reconstruction looks like whose lens is wrong by as much.
 void Bend(double k1_change, MadeControl* made) {
   const ControlPoints none;
-  ControlBlock block = MakeControlBlock({.model = made->model,
-                                         .observations = made->observations,
-                                         .stations = made->stations,
-                                         .image_of_station = made->image_of_station,
-                                         .control = none});
-  const std::vector<BlockPhoto> before = block.block.photos;
-  block.block.lenses[0].numbers[kK1] += k1_change;
-  for (BlockPhoto& photo : block.block.photos) {
+  ControlBundle bundle = MakeControlBundle({.model = made->model,
+                                            .observations = made->observations,
+                                            .stations = made->stations,
+                                            .image_of_station = made->image_of_station,
+                                            .control = none});
+  const std::vector<BundlePhoto> before = bundle.bundle.photos;
+  bundle.bundle.lenses[0].numbers[kK1] += k1_change;
+  for (BundlePhoto& photo : bundle.bundle.photos) {
     photo.gps = photo.centre;
     photo.gps_sigma = Eigen::Vector3d::Constant(3.0);
   }
-  std::vector<uint32_t> tracks(block.n_ties);
+  std::vector<uint32_t> tracks(bundle.n_ties);
   std::iota(tracks.begin(), tracks.end(), 0U);
-  ASSERT_TRUE(AdjustBundle(block.block, tracks, {.loss = 2.5, .gentle = true, .free_lens = false, .max_iterations = 60, .tolerance = 1e-9}, {}));
-  UpdateModel(block, {}, before, true, made->model);
+  ASSERT_TRUE(AdjustBundle(bundle.bundle, tracks, {.loss = 2.5, .gentle = true, .free_lens = false, .max_iterations = 60, .tolerance = 1e-9}, {}));
+  UpdateModel(bundle, {}, before, true, made->model);
   for (size_t i = 0; i < made->stations.size(); ++i) made->stations[i].cam_from_model = made->model.images[i].cam_from_world;
 }
 

@@ -57,7 +57,7 @@ class SeedPosesTest : public testing::Test {
     // The GSD is 6 cm; the height of a camera is the least certain.
     EXPECT_LT(accuracy.centre_m, 0.12);
     EXPECT_LT(accuracy.worst_m, 0.4);
-    // In the corners; a level block hardly resists being bent.
+    // In the corners; a level survey hardly resists being bent.
     EXPECT_LT(accuracy.worst_deg, 0.3);
     EXPECT_LT(seeded->median_error, 0.8);
     for (const auto& [id, camera] : seeded->model.cameras)
@@ -167,14 +167,14 @@ TEST_F(SeedPosesTest, FewPhotosWithoutTagsAreResected) {
   ExpectRight(made, SeedPoses(made.input, threads_, &reason_), 30);
 }
 
-TEST_F(SeedPosesTest, SmallBlocksAreHeldByTheTags) {
-  struct Block {
+TEST_F(SeedPosesTest, SmallSurveysAreHeldByTheTags) {
+  struct SmallSurvey {
     SurveyPlan plan;
     double centre_m;
   };
   // A strip says little about its own bend: only the tags hold it.
   for (const auto& [plan, centre_m] :
-       {Block{{.strips = 1, .per_strip = 12, .seed = 13}, 1.0}, Block{{.strips = 2, .per_strip = 2, .seed = 14}, 0.5}}) {
+       {SmallSurvey{{.strips = 1, .per_strip = 12, .seed = 13}, 1.0}, SmallSurvey{{.strips = 2, .per_strip = 2, .seed = 14}, 0.5}}) {
     const MadeSurvey made = MakeSurvey(plan);
     const auto seeded = SeedPoses(made.input, threads_, &reason_);
     ASSERT_TRUE(seeded) << reason_;

@@ -32,7 +32,7 @@ TEST(RotationsLookingDown, FindsTheTurnOfEveryPhoto) {
   std::string reason;
   ASSERT_TRUE(MakeSeedSurvey(made.input, &survey, &reason)) << reason;
   std::vector<SeedView> views;
-  for (const BlockPhoto& photo : survey.photos) views.push_back({true, Eigen::Quaterniond::Identity(), *photo.gps});
+  for (const BundlePhoto& photo : survey.photos) views.push_back({true, Eigen::Quaterniond::Identity(), *photo.gps});
   const auto rotations = RotationsLookingDown(survey.rays, views);
   for (size_t i = 0; i < rotations.size(); ++i) {
     ASSERT_TRUE(rotations[i]);

@@ -38,6 +38,6 @@ std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::Co
 
 // Adds stations that had no part in a geo-reference to its lists, which afterwards are in the order of `stations`. `resected`: per station, 1 for
 // those. Their tags count as not agreeing; each is compared with its photo as that of the photo nearest to it in time was.
-void AddResected(const std::vector<Station>& stations, const std::vector<char>& resected, Georeference& georeference);
+void AddResected(const std::vector<input::Station>& stations, const std::vector<char>& resected, georeference::Georeference& georeference);
 
 }  // namespace skyquilt::prepare

@@ -23,9 +23,11 @@
 #include "core/survey/survey.h"
 #include "prepare/prepare_options.h"
 
-namespace skyquilt::prepare {
-
+namespace skyquilt::prepare::poses {
 class RemoteTasks;  // poses/pose_task.h
+}
+
+namespace skyquilt::prepare {
 
 struct PrepareInput {
   std::filesystem::path photos;      // folder, searched recursively; see FindInputs in input/input_folder.h
@@ -40,7 +42,7 @@ using OnPlaced = std::function<void(const survey::Survey& survey, std::chrono::s
 // Photos that cannot be used are left out with a warning that names them. Throws base::UsageError for invalid options, base::InputError when fewer
 // than 3 usable photos remain or a file cannot be read or written, base::Interrupted when asked to stop. `ranks`: processes that share the
 // search for poses; null: this one does it alone, with the same result.
-survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks = nullptr,
+survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, poses::RemoteTasks* ranks = nullptr,
                        const OnPlaced& on_placed = {});
 
 }  // namespace skyquilt::prepare

@@ -71,12 +71,12 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
 void PrepareOptions::Check() const {
   config::CheckRanges("prepare", *this);
   ParseHoldout(holdout);
-  if (!photos.empty()) ParsePatterns(photos);
-  CheckBandsOption(bands);
+  if (!photos.empty()) input::ParsePatterns(photos);
+  input::CheckBandsOption(bands);
   if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: set it to the name or path of the COLMAP program, for instance colmap");
 }
 
-PoseOptions PoseOptionsOf(const PrepareOptions& options) {
+poses::PoseOptions PoseOptionsOf(const PrepareOptions& options) {
   return {.fast = options.poses == "fast",
           .seed_poses = options.seed_poses,
           .colmap = options.colmap,
@@ -87,7 +87,7 @@ PoseOptions PoseOptionsOf(const PrepareOptions& options) {
           .seed = options.seed};
 }
 
-ControlFiles ControlFilesOf(const PrepareOptions& options) {
+control::ControlFiles ControlFilesOf(const PrepareOptions& options) {
   return {.points = options.gcp,
           .marks = options.gcp_marks,
           .crs = options.gcp_crs,
@@ -96,7 +96,7 @@ ControlFiles ControlFilesOf(const PrepareOptions& options) {
           .check_points = options.check_points};
 }
 
-PlaceOptions PlaceOptionsOf(const PrepareOptions& options) {
+georeference::PlaceOptions PlaceOptionsOf(const PrepareOptions& options) {
   return {.ransac_threshold_m = options.ransac_threshold_m,
           .flight_gap_s = options.flight_gap_s,
           .flight_offsets = options.flight_offsets,

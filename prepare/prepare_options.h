@@ -45,8 +45,8 @@ struct PrepareOptions {
 };
 
 // The parts that the search for poses, the reading of control points and the geo-reference need.
-PoseOptions PoseOptionsOf(const PrepareOptions& options);
-ControlFiles ControlFilesOf(const PrepareOptions& options);
-PlaceOptions PlaceOptionsOf(const PrepareOptions& options);
+poses::PoseOptions PoseOptionsOf(const PrepareOptions& options);
+control::ControlFiles ControlFilesOf(const PrepareOptions& options);
+georeference::PlaceOptions PlaceOptionsOf(const PrepareOptions& options);
 
 }  // namespace skyquilt::prepare

@@ -11,7 +11,7 @@
 #include "core/base/cancel.h"
 #include "prepare/bundle/bundle_costs.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 namespace {
 
 class Watch : public ceres::IterationCallback {
@@ -158,4 +158,4 @@ bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const
   return true;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -8,7 +8,7 @@
 
 #include "prepare/bundle/bundle_problem.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 struct BundleStage {
   // Errors beyond this many units lose weight: linear in the error (Huber) when `gentle`, else (Cauchy) almost all of it.
@@ -36,4 +36,4 @@ constexpr double kTagLoss = 2.0;
 bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration,
                   Eigen::Vector3d* shift = nullptr);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -11,7 +11,7 @@
 #include "core/linear/sparse.h"
 #include "prepare/bundle/entry_term.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 namespace {
 
 using Eigen::Matrix3d;
@@ -313,4 +313,4 @@ Eigen::Matrix<double, 3, 7> SimilarityJacobian(const Vector3d& from_middle) {
   return jacobian;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

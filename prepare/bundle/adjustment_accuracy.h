@@ -13,7 +13,7 @@
 #include "prepare/bundle/adjust_bundle.h"
 #include "prepare/bundle/bundle_problem.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 class AdjustmentAccuracy {
  public:
@@ -41,4 +41,4 @@ double KnownWeight(const KnownPoint& known, const Eigen::Vector3d& x_in_enu, dou
 // Derivatives of where a point gets by translation, rotation and log scale about a middle; `from_middle` is its place from there.
 Eigen::Matrix<double, 3, 7> SimilarityJacobian(const Eigen::Vector3d& from_middle);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

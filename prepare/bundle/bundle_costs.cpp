@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 namespace {
 
 template <int rows, int cols>
@@ -153,4 +153,4 @@ bool LensCost::Evaluate(double const* const* parameters, double* residuals, doub
   return true;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -12,7 +12,7 @@
 
 #include "prepare/bundle/lens.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 using PoseNumbers = std::array<double, 7>;
 
@@ -88,4 +88,4 @@ class LensCost : public ceres::SizedCostFunction<8, 8> {
   Lens expected_, sigma_;
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

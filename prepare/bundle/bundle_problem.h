@@ -11,7 +11,7 @@
 #include "core/camera/camera.h"
 #include "prepare/bundle/lens.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 // A feature of a photo as part of a track.
 struct TrackEntry {
@@ -76,4 +76,4 @@ struct KnownPoint {
 
 constexpr double kUnitWidth_px = 1600.0;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

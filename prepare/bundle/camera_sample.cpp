@@ -6,7 +6,7 @@
 
 #include "core/base/disjoint_sets.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 namespace {
 
 constexpr size_t kMinPhotosOfPoint = 3;
@@ -127,4 +127,4 @@ CameraSample SelectSample(const survey::ColmapModel& model, const survey::Colmap
   return sample;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -7,7 +7,7 @@
 
 #include "core/survey/colmap_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 struct Sighting {
   int photo = 0;                                    // index into CameraSample::cam_from_world
@@ -32,4 +32,4 @@ CameraSample SelectSample(const survey::ColmapModel& model, const survey::Colmap
 
 constexpr int kMinSightings = 12;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -3,7 +3,7 @@
 #include "core/linear/linear.h"
 #include "prepare/bundle/bundle_costs.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 EntryTerm TermOf(const BundleProblem& bundle, uint32_t entry, const Eigen::Vector3d& x_in_enu) {
   const BundlePhoto& photo = bundle.photos[bundle.tracks.entries[entry].photo];
@@ -54,4 +54,4 @@ std::optional<Eigen::Matrix3d> CovarianceByMarks(const BundleProblem& bundle, ui
   return inverse;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -7,7 +7,7 @@
 
 #include "prepare/bundle/bundle_problem.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 // Error of an entry against a point, and its derivatives by its photo (columns as in PoseManifold, the seventh is zero), its lens's numbers and the
 // point, all over the entry's sigma.
@@ -27,4 +27,4 @@ void RefineByMarks(BundleProblem& bundle, uint32_t track);
 // Covariance of a point by its agreeing entries alone, as if photos and lenses were exact. Nothing when fewer than two count.
 std::optional<Eigen::Matrix3d> CovarianceByMarks(const BundleProblem& bundle, uint32_t track);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

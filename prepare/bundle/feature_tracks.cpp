@@ -6,7 +6,7 @@
 #include "core/base/cancel.h"
 #include "core/base/disjoint_sets.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 namespace {
 
 // Groups of nodes, each a ring. Every node belongs to a photo; no group has two nodes of one photo.
@@ -134,4 +134,4 @@ std::vector<uint32_t> ChooseTracks(const BundleProblem& bundle, const std::vecto
   return chosen;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -7,7 +7,7 @@
 
 #include "prepare/bundle/bundle_problem.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 // Matches of a pair of photos, given by index.
 struct IndexedPair {
@@ -26,4 +26,4 @@ FeatureTracks JoinMatches(const std::vector<IndexedPair>& pairs, const std::vect
 constexpr double kLeastFilled = 0.75;
 std::vector<uint32_t> ChooseTracks(const BundleProblem& bundle, const std::vector<char>& usable, const std::vector<char>& counts, size_t per_photo);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

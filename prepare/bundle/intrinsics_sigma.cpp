@@ -8,7 +8,7 @@
 #include "core/linear/linear.h"
 #include "prepare/bundle/camera_sample.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 namespace {
 
 using Eigen::Index;
@@ -268,4 +268,4 @@ LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey:
   return accuracy;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

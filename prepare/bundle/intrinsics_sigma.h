@@ -8,7 +8,7 @@
 
 #include "core/survey/colmap_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 struct LensAccuracy {
   double k1_sigma = std::numeric_limits<double>::quiet_NaN();  // very large, but finite, when the photos do not determine k1
@@ -32,4 +32,4 @@ LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey:
 // Index of the first radial coefficient among a camera's parameters; -1 when the model has none.
 int RadialParameterIndex(camera::CameraModel model);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 using camera::CameraModel;
 
@@ -92,4 +92,4 @@ Eigen::Vector2d Project(const Lens& lens, const Eigen::Vector3d& x_in_cam, LensJ
   return {f * xd + cx, fy * yd + cy};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -9,7 +9,7 @@
 
 #include "core/camera/camera.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 // f, fy / fx, cx, cy, k1, k2, p1, p2; pixels for f, cx and cy.
 using Lens = std::array<double, 8>;
@@ -30,4 +30,4 @@ struct LensJacobian {
 // null.
 Eigen::Vector2d Project(const Lens& lens, const Eigen::Vector3d& x_in_cam, LensJacobian* jacobian);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -8,7 +8,7 @@
 #include "core/base/cancel.h"
 #include "core/linear/linear.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 namespace {
 
 bool Resect(BundleProblem& bundle, uint32_t index, const std::vector<uint32_t>& entries, const std::vector<uint32_t>& track_of, double threshold) {
@@ -143,4 +143,4 @@ size_t RefineByPoints(BundleProblem& bundle, uint32_t photo, const std::vector<u
   return n;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -6,7 +6,7 @@
 
 #include "prepare/bundle/bundle_problem.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 // The entries of each photo.
 std::vector<std::vector<uint32_t>> EntriesOfPhotos(const BundleProblem& bundle);
@@ -25,4 +25,4 @@ size_t RefineByPoints(BundleProblem& bundle, uint32_t photo, const std::vector<u
 // Fewer agreeing observations do not make a pose (COLMAP registers photos from this number on).
 constexpr size_t kLeastObservations = 30;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 // Median length of a vector of two components, each of normal noise with standard deviation 1.
 constexpr double kRayleighMedian = 1.17741;
@@ -45,4 +45,4 @@ class SerialCorrelation {
   std::array<int, 3> count_{};
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -8,7 +8,7 @@
 #include "core/base/cancel.h"
 #include "core/linear/linear.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 namespace {
 
 struct Sight {
@@ -187,4 +187,4 @@ void PlaceOnGround(BundleProblem& bundle, std::span<const uint32_t> tracks, doub
   }
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

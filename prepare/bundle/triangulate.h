@@ -7,7 +7,7 @@
 #include "core/base/thread_pool.h"
 #include "prepare/bundle/bundle_problem.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 
 // Places the point of one track and marks the entries that agree with it. Tries the point it has, and the meetings of pairs of rays; the one with the
 // most entries within `threshold` (units, see BundleLens) is refined by Gauss-Newton. No point, when fewer than two entries agree or their rays meet
@@ -23,4 +23,4 @@ constexpr double kLeastAngle_deg = 1.5;
 // the rays of the track. All entries of placed photos agree.
 void PlaceOnGround(BundleProblem& bundle, std::span<const uint32_t> tracks, double height_m);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

@@ -7,7 +7,7 @@
 #include "core/base/order_statistics.h"
 #include "core/linear/linear.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Index;
@@ -103,4 +103,4 @@ Dome FitDome(const std::vector<HeightDifference>& differences) {
   return {-solution[3], sigma};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct HeightDifference {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  // of the camera, ENU
@@ -25,4 +25,4 @@ Dome FitDome(const std::vector<HeightDifference>& differences);
 
 constexpr int kMinDomeTags = 10;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -64,7 +64,7 @@ survey::GravityEvidence HeightEvidence(const Adjustment& adjustment, int n, doub
 }
 
 void ReportBias(const std::vector<int>& flight, const std::vector<Tag>& tags, const Adjustment& adjustment, survey::GeoFit& fit) {
-  const auto n_flights = static_cast<size_t>(CountFlights(flight));
+  const auto n_flights = static_cast<size_t>(input::CountFlights(flight));
   std::vector<double> first(n_flights, kUnknown), last(n_flights, kUnknown), sum(n_flights, 0.0), count(n_flights, 0.0);
   for (size_t k = 0; k < tags.size(); ++k) {
     const auto f = static_cast<size_t>(flight[tags[k].station]);
@@ -96,4 +96,4 @@ SecondGroup FindSecondGroup(const std::vector<Tag>& tags, const Georeference& re
   return counts ? best : SecondGroup{};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

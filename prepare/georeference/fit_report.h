@@ -10,7 +10,7 @@
 #include "prepare/georeference/georeference.h"
 #include "prepare/georeference/place_adjustment.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // `vertical_span_m`: range of the height errors that were found.
 geo::PlaceAccuracy AccuracyOf(const Adjustment& adjustment, const std::vector<Tag>& tags, HeightTags heights, double vertical_span_m);
@@ -30,4 +30,4 @@ struct SecondGroup {
 // At least a fifth of the tags, and four; `noise_m`: standard deviation of the tags per axis.
 SecondGroup FindSecondGroup(const std::vector<Tag>& tags, const Georeference& result, double noise_m);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

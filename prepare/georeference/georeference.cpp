@@ -21,7 +21,7 @@
 #include "prepare/georeference/tags/tags.h"
 #include "prepare/georeference/tags/track.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Matrix3d;
@@ -42,7 +42,7 @@ void Clear(size_t n, Georeference& result) {
 }
 
 // Residuals and the errors of the fit, from the transform and the corrections in `result`.
-void Evaluate(const std::vector<Station>& stations, const std::vector<Tag>& tags, double threshold_m, Georeference& result) {
+void Evaluate(const std::vector<input::Station>& stations, const std::vector<Tag>& tags, double threshold_m, Georeference& result) {
   survey::GeoFit& fit = result.fit;
   fit.n_matches = static_cast<int>(tags.size());
   fit.n_inliers = 0;
@@ -70,8 +70,8 @@ void Evaluate(const std::vector<Station>& stations, const std::vector<Tag>& tags
 }
 
 // The flight with most RTK tags, else with most tags.
-int ReferenceFlight(const std::vector<Station>& stations, const std::vector<Tag>& tags, const std::vector<int>& flight) {
-  std::vector<int> n_tagged(static_cast<size_t>(CountFlights(flight)), 0), n_rtk = n_tagged;
+int ReferenceFlight(const std::vector<input::Station>& stations, const std::vector<Tag>& tags, const std::vector<int>& flight) {
+  std::vector<int> n_tagged(static_cast<size_t>(input::CountFlights(flight)), 0), n_rtk = n_tagged;
   for (const Tag& tag : tags) {
     ++n_tagged[static_cast<size_t>(flight[tag.station])];
     n_rtk[static_cast<size_t>(flight[tag.station])] += stations[tag.station].rtk ? 1 : 0;
@@ -88,7 +88,7 @@ struct TagsAlone {
   geo::Similarity3d enu_from_model;
 };
 
-TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<Tag>& tags, const PlaceOptions& options) {
+TagsAlone FitTagsAlone(const std::vector<input::Station>& stations, const std::vector<Tag>& tags, const PlaceOptions& options) {
   std::vector<Vector3d> in_model, in_enu;
   for (const Tag& tag : tags) {
     if (!tag.x_in_enu.allFinite()) continue;
@@ -113,9 +113,9 @@ TagsAlone FitTagsAlone(const std::vector<Station>& stations, const std::vector<T
 }
 
 // For comparison with gimbal angles that the photos contradict.
-std::optional<Vector3d> UpByTags(const std::vector<Station>& stations, const PlaceOptions& options) {
+std::optional<Vector3d> UpByTags(const std::vector<input::Station>& stations, const PlaceOptions& options) {
   constexpr double kUseful_deg = 10.0;
-  const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
+  const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value(); });
   if (n_tagged < kMinAgreeing || TagsAboveOneAnother(stations)) return std::nullopt;
   std::vector<size_t> order(stations.size());
   std::iota(order.begin(), order.end(), size_t{0});
@@ -124,8 +124,8 @@ std::optional<Vector3d> UpByTags(const std::vector<Station>& stations, const Pla
   return alone.ok && alone.sigma_deg < kUseful_deg ? std::optional(alone.up_in_model) : std::nullopt;
 }
 
-std::vector<Station> WithoutAngles(std::vector<Station> stations) {
-  for (Station& station : stations) station.up_in_cam.reset();
+std::vector<input::Station> WithoutAngles(std::vector<input::Station> stations) {
+  for (input::Station& station : stations) station.up_in_cam.reset();
   return stations;
 }
 
@@ -145,7 +145,8 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
   }
   geo::Similarity3d start = SimilarityOfFit(flight, tags, level_from_model, flat);
   Vector3d middle = Vector3d::Zero();
-  for (const Station& station : flight.stations) middle += station.cam_from_model.OriginInSource() / static_cast<double>(flight.stations.size());
+  for (const input::Station& station : flight.stations)
+    middle += station.cam_from_model.OriginInSource() / static_cast<double>(flight.stations.size());
 
   HeightBias bias;
   if (flight.options.flight_offsets != "off" && heights != HeightTags::kUnknown) {
@@ -227,7 +228,7 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
 std::optional<survey::Problem> CoordinateProblem(const TaggedFlight& flight, const Gravity& gravity, int n_tags) {
   const Matrix3d level_from_model = linear::RotationBetween(gravity.up, Vector3d::UnitZ()).toRotationMatrix();
   if (OnOneLine(flight.stations, level_from_model)) return std::nullopt;
-  const auto agreeing = [&](const std::vector<Station>& stations) {
+  const auto agreeing = [&](const std::vector<input::Station>& stations) {
     const std::vector<Tag> tags = CollectTags(stations, flight.track.order(), MedianPosition(stations), HeightTags::kUnknown);
     return FitLevelled({stations, flight.track, flight.flight, flight.options}, tags, level_from_model).n_inliers;
   };
@@ -244,7 +245,7 @@ std::optional<survey::Problem> CoordinateProblem(const TaggedFlight& flight, con
 }
 
 // Whether the photos are above one another, and their tags do not tell the little by which they differ horizontally from noise.
-bool LeavesNorthOpen(const std::vector<Station>& stations, const Gravity& gravity, const Georeference& result) {
+bool LeavesNorthOpen(const std::vector<input::Station>& stations, const Gravity& gravity, const Georeference& result) {
   constexpr double kOpen_deg = 10.0;
   if (result.ok && result.fit.accuracy.yaw_deg <= kOpen_deg) return false;
   return TagsFormColumn(stations) && CamerasAboveOneAnother(stations, gravity);
@@ -252,15 +253,15 @@ bool LeavesNorthOpen(const std::vector<Station>& stations, const Gravity& gravit
 
 }  // namespace
 
-Georeference PlaceOnEarth(const std::vector<Station>& given, const std::vector<Vector3d>& points, const PlaceOptions& options) {
+Georeference PlaceOnEarth(const std::vector<input::Station>& given, const std::vector<Vector3d>& points, const PlaceOptions& options) {
   Georeference result;
   result.gimbal = JudgeGimbal(given, points, [&] { return UpByTags(given, options); });
-  const std::vector<Station> without_angles = result.gimbal.use == GimbalUse::kDropped ? WithoutAngles(given) : std::vector<Station>();
-  const std::vector<Station>& stations = result.gimbal.use == GimbalUse::kDropped ? without_angles : given;
-  result.flight = SplitFlights(stations, options.flight_gap_s);
+  const std::vector<input::Station> without_angles = result.gimbal.use == GimbalUse::kDropped ? WithoutAngles(given) : std::vector<input::Station>();
+  const std::vector<input::Station>& stations = result.gimbal.use == GimbalUse::kDropped ? without_angles : given;
+  result.flight = input::SplitFlights(stations, options.flight_gap_s);
   Clear(stations.size(), result);
   const Gravity gravity = FindGravity(stations, points);
-  const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
+  const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value(); });
   result.fit.n_matches = static_cast<int>(n_tagged);
   const char* use_tags =
       "Use photos with GPS tags (EXIF or XMP): at least four that agree, not all in one place. Then run the same command with --restart";
@@ -304,11 +305,11 @@ Georeference PlaceOnEarth(const std::vector<Station>& given, const std::vector<V
   return result;
 }
 
-Georeference KeepExactFrame(const std::vector<Station>& stations, const geo::Geodetic& origin, const PlaceOptions& options) {
+Georeference KeepExactFrame(const std::vector<input::Station>& stations, const geo::Geodetic& origin, const PlaceOptions& options) {
   Georeference result;
   result.ok = true;
   result.origin = origin;
-  result.flight = SplitFlights(stations, options.flight_gap_s);
+  result.flight = input::SplitFlights(stations, options.flight_gap_s);
   Clear(stations.size(), result);
   const Track track(stations, result.flight);
   Evaluate(stations, CollectTags(stations, track.order(), origin, HeightTags::kTagged), options.ransac_threshold_m, result);
@@ -321,4 +322,4 @@ Georeference KeepExactFrame(const std::vector<Station>& stations, const geo::Geo
   return result;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -15,7 +15,7 @@
 #include "prepare/georeference/place_options.h"
 #include "prepare/input/station.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct Georeference {
   bool ok = false;  // false: levelled local frame, unknown scale; the first problem says why
@@ -33,12 +33,12 @@ struct Georeference {
 
 // `points` are the sparse points in the model's frame, may be empty. Gimbal angles that stand alone against the photos and the tagged positions are
 // not used (gimbal_check.h).
-Georeference PlaceOnEarth(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points, const PlaceOptions& options);
+Georeference PlaceOnEarth(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points, const PlaceOptions& options);
 // For a model that is already in ENU about `origin`: keeps its frame and only computes the residuals of the tags.
-Georeference KeepExactFrame(const std::vector<Station>& stations, const geo::Geodetic& origin, const PlaceOptions& options);
+Georeference KeepExactFrame(const std::vector<input::Station>& stations, const geo::Geodetic& origin, const PlaceOptions& options);
 // Frame for a model without GPS: z along `up`; origin: median of the points; the median depth of points in the cameras becomes kLocalDepth. `up` and
 // `points` are in the model's frame; `points` may be empty.
-geo::Similarity3d LocalFrame(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up);
+geo::Similarity3d LocalFrame(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up);
 
 // Less accurate than this, no place is claimed.
 constexpr double kMaxTiltSigma_deg = 5.0;
@@ -47,4 +47,4 @@ constexpr int kMinAgreeing = 4;
 
 constexpr double kLocalDepth = 40.0;  // local units, in place of metres
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

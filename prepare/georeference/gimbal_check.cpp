@@ -7,7 +7,7 @@
 #include "core/base/order_statistics.h"
 #include "prepare/georeference/gravity.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Vector3d;
@@ -37,11 +37,12 @@ int Vote(double to_cameras_deg, double to_gimbal_deg) {
 }
 
 // Cameras are above what they see.
-int VoteOfSides(const std::vector<Station>& stations, const std::vector<Vector3d>& points, const Vector3d& by_cameras, const Vector3d& by_gimbal) {
+int VoteOfSides(const std::vector<input::Station>& stations, const std::vector<Vector3d>& points, const Vector3d& by_cameras,
+                const Vector3d& by_gimbal) {
   if (points.empty()) return 0;
   std::vector<Vector3d> centres;
   centres.reserve(stations.size());
-  for (const Station& station : stations) centres.push_back(station.cam_from_model.OriginInSource());
+  for (const input::Station& station : stations) centres.push_back(station.cam_from_model.OriginInSource());
   const Vector3d way = MedianOf(centres) - MedianOf(points);
   if (!(way.norm() > 0.0)) return 0;
   const double cameras = way.normalized().dot(by_cameras), gimbal = way.normalized().dot(by_gimbal);
@@ -49,17 +50,17 @@ int VoteOfSides(const std::vector<Station>& stations, const std::vector<Vector3d
 }
 
 // Whether the right axes of the cameras are level for this direction of up.
-bool IsLevel(const std::vector<Station>& stations, const Vector3d& up) {
+bool IsLevel(const std::vector<input::Station>& stations, const Vector3d& up) {
   constexpr double kLevel = 0.26;  // sine of 15 degrees
   std::vector<double> off;
   off.reserve(stations.size());
-  for (const Station& station : stations) off.push_back(std::abs((station.cam_from_model.rotation.conjugate() * Vector3d::UnitX()).dot(up)));
+  for (const input::Station& station : stations) off.push_back(std::abs((station.cam_from_model.rotation.conjugate() * Vector3d::UnitX()).dot(up)));
   return base::Median(std::move(off)) < kLevel;
 }
 
 }  // namespace
 
-GimbalVerdict JudgeGimbal(const std::vector<Station>& stations, const std::vector<Vector3d>& points,
+GimbalVerdict JudgeGimbal(const std::vector<input::Station>& stations, const std::vector<Vector3d>& points,
                           const std::function<std::optional<Vector3d>()>& tags_up) {
   const std::vector<UpEvidence> gimbal = GimbalEvidence(stations);
   const std::vector<UpEvidence> cameras = CameraEvidence(stations);
@@ -93,7 +94,7 @@ GimbalVerdict JudgeGimbal(const std::vector<Station>& stations, const std::vecto
 GimbalFault FaultOfAngles(const Vector3d& tagged, const Vector3d& found) {
   if (!(AngleBetween(tagged, found) > kGimbalConflict_deg)) return GimbalFault::kNone;
   constexpr double kSame = 1e-9;
-  if ((tagged - UpInCamera(0.0, 0.0)).norm() < kSame) return GimbalFault::kAllZero;
+  if ((tagged - input::UpInCamera(0.0, 0.0)).norm() < kSame) return GimbalFault::kAllZero;
   const Vector3d other_sign(tagged.x(), tagged.y(), -tagged.z());
   if (!(AngleBetween(other_sign, found) > kGimbalConflict_deg)) return GimbalFault::kOppositePitch;
   // Pitch less a right angle.
@@ -102,4 +103,4 @@ GimbalFault FaultOfAngles(const Vector3d& tagged, const Vector3d& found) {
   return GimbalFault::kOther;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -11,7 +11,7 @@
 
 #include "prepare/input/station.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 enum class GimbalUse {
   kUsed,     // nothing contradicts them, or there are none
@@ -26,7 +26,7 @@ struct GimbalVerdict {
 
 // `points` are sparse points, all in the model's frame; may be empty. `tags_up`: the direction of up of a fit to the tagged positions alone, nothing
 // when they do not determine it; asked for only when angles and axes contradict each other.
-GimbalVerdict JudgeGimbal(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points,
+GimbalVerdict JudgeGimbal(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points,
                           const std::function<std::optional<Eigen::Vector3d>()>& tags_up);
 
 // How angles may be wrong.
@@ -38,4 +38,4 @@ GimbalFault FaultOfAngles(const Eigen::Vector3d& tagged, const Eigen::Vector3d& 
 // Smaller angles are no contradiction: cameras that look about straight down need not look exactly down.
 constexpr double kGimbalConflict_deg = 25.0;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -10,7 +10,7 @@
 #include "core/linear/linear.h"
 #include "prepare/bundle/robust.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Matrix3d;
@@ -90,7 +90,7 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
     sigma = std::max(noise.least_deg * kRadiansPerDegree, base::kMadToSigma * base::Median(sizes));
     Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
     Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
-    SerialCorrelation correlation;
+    bundle::SerialCorrelation correlation;
     for (size_t i = 0; i < statements.size(); ++i) {
       const Statement& statement = statements[i];
       Eigen::Matrix<double, 3, 5> jacobian;
@@ -101,7 +101,7 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
       for (int k = 0; k < statement.n_directions; ++k) {
         const Eigen::Matrix<double, 1, 5> row = statement.directions.col(k).transpose() * jacobian;
         const double residual = statement.directions.col(k).dot(residuals[i]);
-        const double weight = TukeyWeight(residual / sigma);
+        const double weight = bundle::TukeyWeight(residual / sigma);
         normal += weight * row.transpose() * row;
         right += weight * row.transpose() * residual;
         correlation.Add(static_cast<size_t>(k), std::sqrt(weight) * residual);
@@ -128,17 +128,17 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
   return result;
 }
 
-Vector3d ViewInModel(const Station& station) {
+Vector3d ViewInModel(const input::Station& station) {
   return station.cam_from_model.rotation.conjugate() * Vector3d::UnitZ();
 }
 
 // A first guess from the axes of the cameras: perpendicular to their right axes where these differ in direction, otherwise against the mean view.
-Vector3d RoughUp(const std::vector<Station>& stations) {
+Vector3d RoughUp(const std::vector<input::Station>& stations) {
   Matrix3d right_axes = Matrix3d::Zero();
   Vector3d view = Vector3d::Zero();
   Vector3d camera_up = Vector3d::Zero();
   const auto n = static_cast<double>(stations.size());
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     const Matrix3d model_from_cam = station.cam_from_model.rotation.conjugate().toRotationMatrix();
     right_axes += model_from_cam.col(0) * model_from_cam.col(0).transpose() / n;
     view += model_from_cam.col(2) / n;
@@ -166,10 +166,10 @@ double Gravity::Sigma() const {
   return SigmaOf(up, information);
 }
 
-std::vector<UpEvidence> GimbalEvidence(const std::vector<Station>& stations) {
+std::vector<UpEvidence> GimbalEvidence(const std::vector<input::Station>& stations) {
   std::vector<Statement> statements;
   std::array<std::vector<double>, 3> component;
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     if (!station.up_in_cam) continue;
     statements.push_back(MakeStatement(station.cam_from_model.rotation.toRotationMatrix(), *station.up_in_cam));
     const Vector3d up = station.cam_from_model.rotation.conjugate() * *station.up_in_cam;
@@ -183,14 +183,14 @@ std::vector<UpEvidence> GimbalEvidence(const std::vector<Station>& stations) {
   return {evidence};
 }
 
-std::vector<UpEvidence> CameraEvidence(const std::vector<Station>& stations) {
+std::vector<UpEvidence> CameraEvidence(const std::vector<input::Station>& stations) {
   if (stations.empty()) return {};
   UpEvidence evidence{.up = RoughUp(stations)};
   // Which cameras are meant to look straight down depends on the result.
   for (int round = 0; round < 3; ++round) {
     std::vector<Statement> statements;
     statements.reserve(stations.size());
-    for (const Station& station : stations) {
+    for (const input::Station& station : stations) {
       const Matrix3d cam_from_model = station.cam_from_model.rotation.toRotationMatrix();
       const bool nadir = -ViewInModel(station).dot(evidence.up) > std::cos(kNadir_deg * kRadiansPerDegree);
       Vector3d up_in_cam = nadir ? Vector3d(0.0, 0.0, -1.0) : Vector3d(cam_from_model * evidence.up);
@@ -240,7 +240,8 @@ std::vector<UpEvidence> GroundEvidence(const std::vector<Vector3d>& points, cons
     }
     roughness = base::kMadToSigma * base::Median(distance);
     if (!(roughness > 0.0)) break;
-    for (size_t i = 0; i < points.size(); ++i) weight[i] = radius[i] <= farthest ? TukeyWeight(normal.dot(points[i] - middle) / roughness) : 0.0;
+    for (size_t i = 0; i < points.size(); ++i)
+      weight[i] = radius[i] <= farthest ? bundle::TukeyWeight(normal.dot(points[i] - middle) / roughness) : 0.0;
   }
   const Vector3d spread = eigen.values.cwiseMax(0.0).cwiseSqrt();
   if (!(spread[1] > 0.02 * spread[2]) || !(spread[0] < 0.7 * spread[1])) return {};  // a line, or no plane at all
@@ -254,7 +255,7 @@ std::vector<UpEvidence> GroundEvidence(const std::vector<Vector3d>& points, cons
   return {evidence};
 }
 
-Gravity FindGravity(const std::vector<Station>& stations, const std::vector<Vector3d>& points) {
+Gravity FindGravity(const std::vector<input::Station>& stations, const std::vector<Vector3d>& points) {
   Gravity gravity;
   const std::vector<UpEvidence> gimbal = GimbalEvidence(stations);
   std::vector<UpEvidence> cameras = CameraEvidence(stations);
@@ -292,4 +293,4 @@ Gravity FindGravity(const std::vector<Station>& stations, const std::vector<Vect
   return gravity;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -8,7 +8,7 @@
 
 #include "prepare/input/station.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // One kind of evidence. Directions are unit vectors in the model's frame.
 struct UpEvidence {
@@ -32,20 +32,20 @@ struct Gravity {
 
 // Gimbal angles: every tagged photo gives an up vector; an error of the mounting that is common to all photos is estimated with it
 // (kGimbalCommon_deg). Empty when no photo has angles.
-std::vector<UpEvidence> GimbalEvidence(const std::vector<Station>& stations);
+std::vector<UpEvidence> GimbalEvidence(const std::vector<input::Station>& stations);
 // Camera axes: the right axis of every camera is level, and cameras that look about straight down are meant to look exactly down; common error
 // kCameraCommon_deg. Empty for no stations.
-std::vector<UpEvidence> CameraEvidence(const std::vector<Station>& stations);
+std::vector<UpEvidence> CameraEvidence(const std::vector<input::Station>& stations);
 // The plane of the sparse points, as seen from `rough_up`: ground slopes, hence the accuracy of kGroundSlope_deg. Empty for fewer than 30 points or
 // points on a line. Any order of points gives the same result up to rounding.
 std::vector<UpEvidence> GroundEvidence(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& rough_up);
 
 // All of them, weighted by their information. Gimbal angles replace the camera axes when at least half of the photos have them. Evidence that
 // contradicts itself widens the result (Birge's ratio). `points` are in the model's frame, may be empty.
-Gravity FindGravity(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points);
+Gravity FindGravity(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points);
 
 constexpr double kGimbalCommon_deg = 0.25;
 constexpr double kCameraCommon_deg = 2.0;
 constexpr double kGroundSlope_deg = 4.0;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

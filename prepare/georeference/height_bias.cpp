@@ -10,7 +10,7 @@
 #include "core/linear/linear.h"
 #include "prepare/bundle/robust.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Index;
@@ -160,7 +160,7 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
       const double sigma_m = std::max(scale * observations.sigma[k], kLeastHeightNoise_m);
       const double r = std::abs(residual[k]) / sigma_m;
       // Least absolute values first: they do not need a good start.
-      const double robust = round < kBiasRounds / 2 ? 1.0 / std::max(r, 0.1) : TukeyWeight(r);
+      const double robust = round < kBiasRounds / 2 ? 1.0 / std::max(r, 0.1) : bundle::TukeyWeight(r);
       weight[k] = robust / (sigma_m * sigma_m);
     }
   }
@@ -190,4 +190,4 @@ BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& 
   return choice;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

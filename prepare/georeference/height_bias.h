@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // Prior standard deviations, metres.
 struct BiasSigmas {
@@ -53,4 +53,4 @@ struct BiasChoice {
 // larger one is clearly more likely. Robust against outliers.
 BiasChoice ChooseBias(const HeightObservations& observations, const HeightBias& bias);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -8,7 +8,7 @@
 
 #include "core/base/random.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Vector2d;
@@ -117,4 +117,4 @@ HorizontalFit FitHorizontally(const std::vector<Vector2d>& tags, const std::func
   return best;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

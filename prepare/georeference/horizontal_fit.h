@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // x_enu = scale * R(angle) * x_level + translation, horizontally; the angle is counter-clockwise.
 struct HorizontalSimilarity {
@@ -38,4 +38,4 @@ struct HorizontalFitOptions {
 HorizontalFit FitHorizontally(const std::vector<Eigen::Vector2d>& tags, const std::function<Eigen::Vector2d(size_t, double)>& level,
                               const HorizontalFitOptions& options);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -11,7 +11,7 @@
 #include "prepare/bundle/robust.h"
 #include "prepare/georeference/georeference.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
@@ -29,7 +29,7 @@ double LocalNoise(const std::vector<Vector2d>& residuals) {
   std::vector<double> sizes;
   sizes.reserve(residuals.size());
   for (size_t k = 1; k < residuals.size(); ++k) sizes.push_back((residuals[k] - residuals[k - 1]).norm());
-  return sizes.empty() ? 0.0 : base::Median(sizes) / (kRayleighMedian * std::numbers::sqrt2);
+  return sizes.empty() ? 0.0 : base::Median(sizes) / (bundle::kRayleighMedian * std::numbers::sqrt2);
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ geo::Similarity3d Turned(const geo::Similarity3d& start, const Vector3d& point, 
   return turned;
 }
 
-bool OnOneLine(const std::vector<Station>& stations, const Matrix3d& level_from_model) {
+bool OnOneLine(const std::vector<input::Station>& stations, const Matrix3d& level_from_model) {
   Eigen::Matrix2Xd x(2, static_cast<Eigen::Index>(stations.size()));
   for (size_t i = 0; i < stations.size(); ++i) {
     x.col(static_cast<Eigen::Index>(i)) = (level_from_model * stations[i].cam_from_model.OriginInSource()).head<2>();
@@ -125,4 +125,4 @@ bool OnOneLine(const std::vector<Station>& stations, const Matrix3d& level_from_
   return value[0] <= kLineRatio * value[1];
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

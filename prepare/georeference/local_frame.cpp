@@ -5,7 +5,7 @@
 #include "core/linear/linear.h"
 #include "prepare/georeference/georeference.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 Eigen::Vector3d MedianPoint(const std::vector<Eigen::Vector3d>& points) {
@@ -21,15 +21,15 @@ Eigen::Vector3d MedianPoint(const std::vector<Eigen::Vector3d>& points) {
 
 }  // namespace
 
-geo::Similarity3d LocalFrame(const std::vector<Station>& stations, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
+geo::Similarity3d LocalFrame(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
   geo::Similarity3d local_from_model;
   if (stations.empty()) return local_from_model;
   std::vector<Eigen::Vector3d> centres;
   centres.reserve(stations.size());
-  for (const Station& station : stations) centres.push_back(station.cam_from_model.OriginInSource());
+  for (const input::Station& station : stations) centres.push_back(station.cam_from_model.OriginInSource());
   const Eigen::Vector3d origin = MedianPoint(points.empty() ? centres : points);
   std::vector<double> depths;
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     std::vector<double> own;
     for (const Eigen::Vector3d& x : points) {
       const double depth = (station.cam_from_model * x).z();
@@ -44,4 +44,4 @@ geo::Similarity3d LocalFrame(const std::vector<Station>& stations, const std::ve
   return local_from_model;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -10,7 +10,7 @@
 #include "prepare/georeference/tags/tag_checks.h"
 #include "prepare/georeference/tags/tags.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 using Eigen::Vector3d;
 
@@ -22,7 +22,7 @@ constexpr double kSameCourse = 0.95;  // correlation of tagged heights with plac
 constexpr size_t kFewestHeights = 4;
 
 // The tags in ENU about their middle, heights as far as they say anything.
-std::vector<Tag> TagsOf(const std::vector<Station>& stations) {
+std::vector<Tag> TagsOf(const std::vector<input::Station>& stations) {
   std::vector<size_t> order(stations.size());
   std::iota(order.begin(), order.end(), size_t{0});
   return CollectTags(stations, order, MedianPosition(stations), JudgeHeights(stations));
@@ -52,7 +52,7 @@ double CorrelationWithHeights(const std::vector<Tag>& tags, const std::vector<Ve
 
 }  // namespace
 
-bool CamerasAboveOneAnother(const std::vector<Station>& stations, const Gravity& gravity) {
+bool CamerasAboveOneAnother(const std::vector<input::Station>& stations, const Gravity& gravity) {
   const std::vector<Tag> tags = TagsOf(stations);
   std::vector<Vector3d> centres;
   Vector3d mean = Vector3d::Zero();
@@ -69,7 +69,7 @@ bool CamerasAboveOneAnother(const std::vector<Station>& stations, const Gravity&
   return vertical || std::abs(CorrelationWithHeights(tags, centres, axis)) >= kSameCourse;
 }
 
-bool TagsFormColumn(const std::vector<Station>& stations) {
+bool TagsFormColumn(const std::vector<input::Station>& stations) {
   std::vector<Tag> tags = TagsOf(stations);
   std::erase_if(tags, [](const Tag& tag) { return !std::isfinite(tag.x_in_enu.z()); });
   Vector3d mean = Vector3d::Zero(), squares = Vector3d::Zero();
@@ -83,7 +83,7 @@ survey::Problem ColumnProblem() {
                  "Add photos that were taken several metres to the side, such as a second column, then run the same command with --restart");
 }
 
-survey::Problem OnePlaceProblem(const std::vector<Station>& stations, const Gravity& gravity) {
+survey::Problem OnePlaceProblem(const std::vector<input::Station>& stations, const Gravity& gravity) {
   const bool equal = AllTagsEqual(stations);
   // Where the tags' heights say nothing, the cameras decide: in a column even right tags would lie at one place.
   const bool same_height = equal && JudgeHeights(stations) != HeightTags::kUnknown;
@@ -95,4 +95,4 @@ survey::Problem OnePlaceProblem(const std::vector<Station>& stations, const Grav
                  "with --restart");
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -9,7 +9,7 @@
 #include "core/linear/linear.h"
 #include "prepare/bundle/robust.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Index;
@@ -89,15 +89,15 @@ class Solver {
       horizontal.push_back(residual_[k].head<2>().norm() / tag.horizontal_sigma_m);
       if (std::abs(residual_[k].z()) <= input_.threshold_m) vertical.push_back(std::abs(residual_[k].z()) / tag.vertical_sigma_m);
     }
-    noise_h_.robust = horizontal.empty() ? 1.0 : base::Median(horizontal) / kRayleighMedian;
+    noise_h_.robust = horizontal.empty() ? 1.0 : base::Median(horizontal) / bundle::kRayleighMedian;
     noise_v_.robust = vertical.empty() ? 1.0 : base::Median(vertical) * base::kMadToSigma;
-    SerialCorrelation correlation_h, correlation_v;
+    bundle::SerialCorrelation correlation_h, correlation_v;
     double squares_h = 0.0, squares_v = 0.0, sum_h = 0.0, sum_v = 0.0;
     for (size_t k = 0; k < n; ++k) {
       const Tag& tag = input_.tags[k];
       const double r = residual_[k].head<2>().norm();
       if (!(r <= input_.threshold_m)) continue;
-      weight_h_[k] = TukeyWeight(r / SigmaH(tag));
+      weight_h_[k] = bundle::TukeyWeight(r / SigmaH(tag));
       squares_h += weight_h_[k] * std::pow(r / SigmaH(tag), 2);
       sum_h += weight_h_[k];
       const double root = std::sqrt(weight_h_[k]) / SigmaH(tag);
@@ -105,7 +105,7 @@ class Solver {
       correlation_h.Add(1, root * residual_[k].y());
       const double up = std::abs(residual_[k].z());
       if (!(up <= input_.threshold_m)) continue;
-      weight_v_[k] = TukeyWeight(up / SigmaV(tag));
+      weight_v_[k] = bundle::TukeyWeight(up / SigmaV(tag));
       squares_v += weight_v_[k] * std::pow(up / SigmaV(tag), 2);
       sum_v += weight_v_[k];
       correlation_v.Add(0, std::sqrt(weight_v_[k]) / SigmaV(tag) * residual_[k].z());
@@ -255,4 +255,4 @@ Adjustment Adjust(const AdjustmentInput& input, const AdjustmentStart& start) {
   return Solver(input, start).Run();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

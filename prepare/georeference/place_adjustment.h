@@ -12,7 +12,7 @@
 #include "prepare/georeference/tags/tags.h"
 #include "prepare/georeference/tags/track.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct AdjustmentInput {
   const Track& track;
@@ -48,4 +48,4 @@ struct AdjustmentStart {
 // Gauss-Newton. At least two tags.
 Adjustment Adjust(const AdjustmentInput& input, const AdjustmentStart& start);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -12,7 +12,7 @@
 #include "prepare/control/reading/read_control.h"
 #include "prepare/georeference/dome_fit.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 std::string Describe(const survey::ControlFit& fit, survey::ControlUse use) {
@@ -39,57 +39,59 @@ void LogControl(const survey::ControlFit& fit) {
 }
 
 // Decides by the photos' poses whether marks were made in upright photos, where their file leaves that open. Logs it.
-void SettleReading(const ControlJob& without_ties, ControlPoints& control) {
-  const ReadingVotes votes = CountReadings(without_ties);
+void SettleReading(const control::ControlJob& without_ties, control::ControlPoints& control) {
+  const control::ReadingVotes votes = control::CountReadings(without_ties);
   if (votes.n_open == 0) return;
-  const MarkReading reading = votes.Reading();
-  if (reading == MarkReading::kUpright) {
+  const control::MarkReading reading = votes.Reading();
+  if (reading == control::MarkReading::kUpright) {
     base::LogWarning(
         "{}: {} marks were made in photos shown upright, as their EXIF orientation says, and are turned to the stored photos: so {} of them agree "
         "with the other marks of their points, as they are written {}",
         control.file, votes.n_open, votes.n_upright, votes.n_stored);
-  } else if (reading == MarkReading::kUndecided) {
+  } else if (reading == control::MarkReading::kUndecided) {
     base::LogWarning(
         "{}: {} marks are in photos that are stored turned (EXIF orientation), and it is not clear whether they were made in upright photos: they "
         "are taken as written, so {} of them agree with the other marks of their points, turned {}. If control points are refused, mark the photos "
         "without turning them, or state the sizes of the marked photos in columns image_width and image_height",
         control.file, votes.n_open, votes.n_stored, votes.n_upright);
   }
-  Settle(reading, control);
+  control::Settle(reading, control);
 }
 
 }  // namespace
 
-ControlPoints ReadControlPoints(const ControlFiles& given, const std::vector<PhotoFile>& files) {
+control::ControlPoints ReadControlPoints(const control::ControlFiles& given, const std::vector<input::PhotoFile>& files) {
   if (given.points.empty()) return {};
-  std::vector<PhotoSize> photos;
+  std::vector<control::PhotoSize> photos;
   std::vector<geo::Geodetic> tags;
   photos.reserve(files.size());
-  for (const PhotoFile& file : files) {
+  for (const input::PhotoFile& file : files) {
     photos.push_back({file.name, file.width, file.height, file.tags.original_width, file.tags.original_height, file.tags.orientation});
     if (file.tags.gps) tags.push_back(*file.tags.gps);
   }
-  ControlPoints control = ReadControl(given, photos);
+  control::ControlPoints control = control::ReadControl(given, photos);
   for (const std::string& warning : control.warnings) base::LogWarning("{}", warning);
-  CheckNear(control, tags);
+  control::CheckNear(control, tags);
   // Tags may turn out not to place the survey; then FitControl refuses.
-  const std::string doubt = CheckGeometry(control, static_cast<int>(tags.size()) >= kMinAgreeing);
+  const std::string doubt = control::CheckGeometry(control, static_cast<int>(tags.size()) >= kMinAgreeing);
   if (!doubt.empty()) base::LogWarning("{}", doubt);
   return control;
 }
 
-survey::ControlFit PlaceByControl(const ControlInput& input, survey::ColmapModel& model, std::vector<Station>& stations, Georeference& georeference,
-                                  base::ThreadPool& threads) {
+survey::ControlFit PlaceByControl(const ControlInput& input, survey::ColmapModel& model, std::vector<input::Station>& stations,
+                                  Georeference& georeference, base::ThreadPool& threads) {
   if (input.control.points.empty()) return {};
   const survey::ColmapObservations observations =
       input.has_observations ? survey::ReadColmapObservations(input.model_folder) : survey::ColmapObservations();
-  ControlPoints control = input.control;
+  control::ControlPoints control = input.control;
   const survey::ColmapObservations no_ties;
   SettleReading({.model = model, .observations = no_ties, .stations = stations, .image_of_station = input.image_of_station, .control = input.control},
                 control);
-  ControlJob job{.model = model, .observations = observations, .stations = stations, .image_of_station = input.image_of_station, .control = control};
-  if (georeference.ok) job.otherwise = PlaceWithoutControl{georeference.origin, georeference.enu_from_model, georeference.fit.accuracy, input.exact};
-  const PlacedByControl placed = FitControl(job, threads);
+  control::ControlJob job{
+      .model = model, .observations = observations, .stations = stations, .image_of_station = input.image_of_station, .control = control};
+  if (georeference.ok)
+    job.otherwise = control::PlaceWithoutControl{georeference.origin, georeference.enu_from_model, georeference.fit.accuracy, input.exact};
+  const control::PlacedByControl placed = control::FitControl(job, threads);
   LogControl(placed.fit);
   if (placed.fit.placed) {
     for (size_t i = 0; i < stations.size(); ++i) stations[i].cam_from_model = model.images[input.image_of_station[i]].cam_from_world;
@@ -124,4 +126,4 @@ std::vector<survey::Problem> BentByControl(const survey::ControlFit& fit) {
            false}};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

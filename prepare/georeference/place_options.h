@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct PlaceOptions {
   double ransac_threshold_m = 10.0;     // tags farther off do not agree
@@ -13,4 +13,4 @@ struct PlaceOptions {
   int seed = 1;
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -9,7 +9,7 @@
 #include "core/base/text.h"
 #include "prepare/georeference/georeference.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using survey::Problem;
@@ -169,4 +169,4 @@ std::vector<Problem> TooUncertain(const survey::GeoFit& fit, bool one_line) {
   return problems;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -7,7 +7,7 @@
 #include "core/survey/geo_fit.h"
 #include "prepare/georeference/tags/tag_checks.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // What a geo-reference found out, as far as its problems depend on it.
 struct PlaceFindings {
@@ -41,4 +41,4 @@ std::vector<survey::Problem> TooUncertain(const survey::GeoFit& fit, bool one_li
 constexpr double kWarnConflict_deg = 2.0;
 constexpr double kWarnScale_percent = 2.0;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -17,7 +17,7 @@
 #include "prepare/poses/focal_check.h"
 #include "prepare/poses/seed/take_off_height.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 constexpr double kBendSigmas = 3.0;
@@ -26,13 +26,14 @@ bool Agrees(const Georeference& georeference, size_t station) {
   return georeference.inlier[station] != 0;
 }
 
-bool MostAreRtk(const std::vector<Station>& stations) {
-  const auto tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
-  const auto rtk = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value() && station.rtk; });
+bool MostAreRtk(const std::vector<input::Station>& stations) {
+  const auto tagged = std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value(); });
+  const auto rtk =
+      std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value() && station.rtk; });
   return 2 * rtk > tagged;
 }
 
-Dome BendOf(const std::vector<Station>& stations, const Georeference& georeference) {
+Dome BendOf(const std::vector<input::Station>& stations, const Georeference& georeference) {
   std::vector<size_t> order(stations.size());
   std::iota(order.begin(), order.end(), size_t{0});
   const auto time = [&](size_t i) { return stations[i].time_s.value_or(std::numeric_limits<double>::infinity()); };
@@ -47,9 +48,9 @@ Dome BendOf(const std::vector<Station>& stations, const Georeference& georeferen
 }
 
 // Those that agree, with what the fit adds to them.
-std::vector<Station> Corrected(const std::vector<Station>& stations, const Georeference& georeference) {
+std::vector<input::Station> Corrected(const std::vector<input::Station>& stations, const Georeference& georeference) {
   const geo::EnuFrame frame(georeference.origin);
-  std::vector<Station> corrected = stations;
+  std::vector<input::Station> corrected = stations;
   for (size_t i = 0; i < stations.size(); ++i) {
     std::optional<geo::Geodetic>& tag = corrected[i].gps;
     if (!Agrees(georeference, i)) tag.reset();
@@ -67,14 +68,14 @@ struct ShapeStart {
   const ShapeInput& input;
   const survey::ColmapModel& model;
   const survey::ColmapObservations& observations;
-  const std::vector<Station>& stations;
+  const std::vector<input::Station>& stations;
   const Georeference& georeference;
 };
 
 // The model after an adjustment to the tags, placed on Earth.
 struct Shaped {
   survey::ColmapModel model;
-  std::vector<Station> stations;
+  std::vector<input::Station> stations;
   Georeference georeference;
   double error_before = 0.0, error_after = 0.0;
 };
@@ -82,14 +83,14 @@ struct Shaped {
 // Nothing when there is no adjustment; the log says why.
 std::optional<Shaped> AdjustShape(const ShapeStart& start, bool hold_focal, base::ThreadPool& threads) {
   Shaped shaped{.model = start.model, .stations = start.stations, .georeference = {}};
-  const AdjustedToTags result = AdjustToTags({.model = shaped.model,
-                                              .observations = start.observations,
-                                              .stations = Corrected(start.stations, start.georeference),
-                                              .image_of_station = start.input.image_of_station,
-                                              .origin = start.georeference.origin,
-                                              .enu_from_model = start.georeference.enu_from_model,
-                                              .hold_focal = hold_focal},
-                                             threads);
+  const control::AdjustedToTags result = control::AdjustToTags({.model = shaped.model,
+                                                                .observations = start.observations,
+                                                                .stations = Corrected(start.stations, start.georeference),
+                                                                .image_of_station = start.input.image_of_station,
+                                                                .origin = start.georeference.origin,
+                                                                .enu_from_model = start.georeference.enu_from_model,
+                                                                .hold_focal = hold_focal},
+                                                               threads);
   if (!result.adjusted) {
     base::LogInfo("the poses are not adjusted to the GPS tags: {}", result.reason);
     return std::nullopt;
@@ -106,14 +107,14 @@ std::optional<Shaped> AdjustShape(const ShapeStart& start, bool hold_focal, base
   return shaped;
 }
 
-bool HasHeightTags(const std::vector<Station>& stations) {
-  return std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.relative_altitude_m.has_value(); });
+bool HasHeightTags(const std::vector<input::Station>& stations) {
+  return std::any_of(stations.begin(), stations.end(), [](const input::Station& station) { return station.relative_altitude_m.has_value(); });
 }
 
-HeightAboveTakeOff HeightsOf(const survey::ColmapModel& model, const std::vector<Station>& stations, const geo::Similarity3d& enu_from_model,
-                             base::ThreadPool& threads) {
+poses::HeightAboveTakeOff HeightsOf(const survey::ColmapModel& model, const std::vector<input::Station>& stations,
+                                    const geo::Similarity3d& enu_from_model, base::ThreadPool& threads) {
   survey::Survey survey;
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     survey::Photo& photo = survey.photos.emplace_back();
     photo.cam_from_enu = geo::TransformCameraWorld(station.cam_from_model, enu_from_model);
     photo.relative_altitude_m = station.relative_altitude_m;
@@ -126,14 +127,14 @@ HeightAboveTakeOff HeightsOf(const survey::ColmapModel& model, const std::vector
     found.push_back(photo.agl_m);
     tagged.push_back(photo.relative_altitude_m.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
-  return CompareHeights(found, tagged);
+  return poses::CompareHeights(found, tagged);
 }
 
 // Whether the adjustment changes a focal length by much: one that only passes a limit is as good as before.
 bool FocalDriven(const survey::ColmapModel& before, const survey::ColmapModel& after) {
   std::map<uint32_t, double> from_px;
   for (const auto& [id, camera] : before.cameras) from_px.emplace(id, camera.FocalX());
-  return AnyFocalMoved(from_px, after);
+  return poses::AnyFocalMoved(from_px, after);
 }
 
 // The focal length, or where tags do not say it the height above ground, when it was near the tags before the adjustment and is far from them
@@ -142,27 +143,27 @@ std::string LostFocal(const ShapeStart& start, const Shaped& shaped, base::Threa
   const std::map<uint32_t, double>& tagged_px = start.input.tagged_focal_px;
   if (!tagged_px.empty()) {
     if (!FocalDriven(start.model, shaped.model)) return "";
-    const std::optional<FarFocal> far = FindFocalFarFrom(tagged_px, shaped.model);
-    return far && !FindFocalFarFrom(tagged_px, start.model) ? far->Text() : "";
+    const std::optional<poses::FarFocal> far = poses::FindFocalFarFrom(tagged_px, shaped.model);
+    return far && !poses::FindFocalFarFrom(tagged_px, start.model) ? far->Text() : "";
   }
   if (!shaped.georeference.ok || !HasHeightTags(start.stations) || !FocalDriven(start.model, shaped.model)) return "";
-  const HeightAboveTakeOff after = HeightsOf(shaped.model, shaped.stations, shaped.georeference.enu_from_model, threads);
+  const poses::HeightAboveTakeOff after = HeightsOf(shaped.model, shaped.stations, shaped.georeference.enu_from_model, threads);
   if (!after.Differs()) return "";
-  const HeightAboveTakeOff before = HeightsOf(start.model, start.stations, start.georeference.enu_from_model, threads);
+  const poses::HeightAboveTakeOff before = HeightsOf(start.model, start.stations, start.georeference.enu_from_model, threads);
   if (before.Differs()) return "";
   return fmt::format("a height above ground of {:.0f} m, where RelativeAltitude says {:.0f} m", after.found_m, after.tagged_m);
 }
 
 }  // namespace
 
-bool TagsTellTheShape(const std::vector<Station>& stations, const Georeference& georeference) {
+bool TagsTellTheShape(const std::vector<input::Station>& stations, const Georeference& georeference) {
   if (!georeference.ok) return false;
   if (MostAreRtk(stations)) return true;
   const Dome bend = BendOf(stations, georeference);
   return std::abs(bend.height_m) > std::max(kLeastBend_m, kBendSigmas * bend.sigma_m);
 }
 
-void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vector<Station>& stations, Georeference& georeference,
+void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vector<input::Station>& stations, Georeference& georeference,
                  base::ThreadPool& threads) {
   if (!TagsTellTheShape(stations, georeference)) return;
   survey::ColmapObservations observations;
@@ -210,4 +211,4 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
   georeference = std::move(placed);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

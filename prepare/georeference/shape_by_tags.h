@@ -12,7 +12,7 @@
 #include "prepare/georeference/place_options.h"
 #include "prepare/input/station.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct ShapeInput {
   const PlaceOptions& options;
@@ -23,7 +23,7 @@ struct ShapeInput {
 
 // Whether tags can say more of the shape than the photos do: most of them are RTK fixes, or the heights differ from theirs like a dome or a bowl (by
 // more than 3 sigma and kLeastBend_m).
-bool TagsTellTheShape(const std::vector<Station>& stations, const Georeference& georeference);
+bool TagsTellTheShape(const std::vector<input::Station>& stations, const Georeference& georeference);
 constexpr double kLeastBend_m = 0.5;
 
 // When they can, adjusts the model to the tags and places it on Earth again: model, stations and geo-reference are the new ones then, and
@@ -31,7 +31,7 @@ constexpr double kLeastBend_m = 0.5;
 // length: when the adjustment takes it, or the height above ground, from where the tags say it is to far from there, it is made once more with the
 // focal lengths of the model. Otherwise, and when the photos contradict the tags, nothing changes. The log says which. Needs a place on Earth. Throws
 // base::Interrupted.
-void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vector<Station>& stations, Georeference& georeference,
+void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vector<input::Station>& stations, Georeference& georeference,
                  base::ThreadPool& threads);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

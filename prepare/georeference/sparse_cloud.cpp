@@ -9,10 +9,9 @@
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // With fewer good points than this number and this share of all, worse ones are kept too.
 constexpr size_t kFewPoints = 1000;
 constexpr double kFewShare = 0.2;
@@ -73,7 +72,7 @@ std::vector<size_t> FilterSparsePoints(std::vector<survey::SparsePoint>& points)
 void MeasureAgl(survey::Survey& survey, base::ThreadPool& threads) {
   threads.ParallelFor(static_cast<int64_t>(survey.photos.size()), [&](int64_t task, int /*thread*/) {
     survey::Photo& photo = survey.photos[static_cast<size_t>(task)];
-    photo.agl_m = kNan;
+    photo.agl_m = std::numeric_limits<double>::quiet_NaN();
     const Eigen::Vector3d centre = photo.cam_from_enu.OriginInSource();
     std::vector<std::pair<double, double>> below;  // horizontal distance squared, height
     below.reserve(survey.points.size());
@@ -96,4 +95,4 @@ void MeasureAgl(survey::Survey& survey, base::ThreadPool& threads) {
   });
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -6,7 +6,7 @@
 #include "core/base/thread_pool.h"
 #include "core/survey/survey.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // Removes points with a reprojection error above kMaxPointErrorPx or a track shorter than kMinTrack, and points far outside the bounds of the rest.
 // These limits are relaxed when hardly any point would remain. Logs how many were removed. Returns where the remaining ones were before, ascending
@@ -21,4 +21,4 @@ constexpr double kMaxPointErrorPx = 2.0;
 constexpr int kMinTrack = 3;
 constexpr int kAglPoints = 20;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -11,7 +11,7 @@
 #include "core/base/errors.h"
 #include "core/base/text.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 std::string BandKey(const std::string& name) {
@@ -22,7 +22,7 @@ std::string BandKey(const std::string& name) {
   return base::LowerCase(key);
 }
 
-std::vector<std::string> PartsOf(const std::string& list) {
+std::vector<std::string> ListedParts(const std::string& list) {
   std::vector<std::string> parts(1);
   for (const char c : list) {
     if (c == ',') {
@@ -86,7 +86,7 @@ BandChoice ChooseBands(const image::PixelFormat& format, const std::vector<std::
     }
     return choice;
   }
-  for (const std::string& part : PartsOf(wanted)) {
+  for (const std::string& part : ListedParts(wanted)) {
     const std::optional<int> number = WholeNumber(part);
     const std::optional<int> band = number ? number : BandNamed(names, part);
     if (!band || *band < 1 || *band > format.bands) {
@@ -101,7 +101,7 @@ BandChoice ChooseBands(const image::PixelFormat& format, const std::vector<std::
 
 void CheckBandsOption(const std::string& wanted) {
   if (wanted.empty()) return;
-  const std::vector<std::string> parts = PartsOf(wanted);
+  const std::vector<std::string> parts = ListedParts(wanted);
   const bool good = (parts.size() == 1 || parts.size() == 3) && std::all_of(parts.begin(), parts.end(), [](const std::string& part) {
                       const std::optional<int> number = WholeNumber(part);
                       return number ? *number >= 1 : !BandKey(part).empty();
@@ -112,4 +112,4 @@ void CheckBandsOption(const std::string& wanted) {
       "\": name the bands for red, green and blue, or one for grey pictures, by numbers from 1 or by names, for instance \"3,2,1\"");
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -6,7 +6,7 @@
 
 #include "core/image/pixel_format.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 struct BandChoice {
   std::vector<int> bands;  // red, green, blue, or one for a grey picture; from 1
@@ -21,4 +21,4 @@ BandChoice ChooseBands(const image::PixelFormat& format, const std::vector<std::
 // Throws base::UsageError when the text of the option cannot be right for any photo: neither one nor three parts, an empty part, 0.
 void CheckBandsOption(const std::string& wanted);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

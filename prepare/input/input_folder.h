@@ -9,7 +9,7 @@
 #include "core/survey/survey.h"
 #include "prepare/input/masks/masks.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 struct InputFolder {
   std::filesystem::path photo_root;  // absolute
@@ -29,4 +29,4 @@ InputFolder FindInputs(const std::filesystem::path& photos, const std::filesyste
 // Metashape .xml; in this order.
 std::vector<std::filesystem::path> ModelsIn(const std::filesystem::path& folder);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -10,7 +10,7 @@
 #include "core/base/text.h"
 #include "prepare/models/photo_names.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ FileOfImage FindPhotos(const survey::ColmapModel& model, const std::vector<Photo
   std::vector<std::string> names;
   names.reserve(files.size());
   for (const PhotoFile& file : files) names.push_back(file.name);
-  const PhotoNames finder(names);
+  const models::PhotoNames finder(names);
   // Names of other programs may lack the folder, so that several images seem to be one photo.
   std::map<size_t, Claim> claims;
   for (const survey::ColmapImage& image : model.images) {
@@ -110,4 +110,4 @@ std::string FewNames(const std::vector<std::string>& names) {
   return base::Join(std::span(names).first(std::min<size_t>(names.size(), 5))) + (names.size() > 5 ? ", ..." : "");
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -11,7 +11,7 @@
 #include "core/survey/colmap_model.h"
 #include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // A photo of the model together with its file. Valid until the model's list of images changes.
 struct Registered {
@@ -36,4 +36,4 @@ std::vector<Registered> RegisteredPhotos(const survey::ColmapModel& model, const
 // The first of them, for messages.
 std::string FewNames(const std::vector<std::string>& names);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

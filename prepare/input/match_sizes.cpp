@@ -10,7 +10,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ fs::path ScaleToPhotos(const FileOfImage& file_of_image, const std::vector<Photo
   return folder;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -8,7 +8,7 @@
 #include "prepare/input/match_photos.h"
 #include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // Whether one is the other one scaled: in the smaller of both, the sides agree to a pixel, since scaled sizes are rounded.
 bool IsScaledSize(int width_a, int height_a, int width_b, int height_b);
@@ -20,4 +20,4 @@ bool IsScaledSize(int width_a, int height_a, int width_b, int height_b);
 std::filesystem::path ScaleToPhotos(const FileOfImage& file_of_image, const std::vector<PhotoFile>& files, const std::filesystem::path& model_folder,
                                     bool has_observations, const std::filesystem::path& folder, survey::ColmapModel& model);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -10,7 +10,7 @@
 #include "core/image/image.h"
 #include "core/image/jpeg_structure.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,4 +67,4 @@ PhotoSet ReadPhotos(const fs::path& root, const std::vector<std::string>& names,
   return set;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

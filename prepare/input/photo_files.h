@@ -8,7 +8,7 @@
 #include "core/base/thread_pool.h"
 #include "core/survey/exif.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 struct PhotoFile {
   std::string name;  // relative to the root, '/' separated
@@ -29,4 +29,4 @@ constexpr int kMinPhotos = 3;
 // Throws base::InputError when fewer than kMinPhotos remain.
 PhotoSet ReadPhotos(const std::filesystem::path& root, const std::vector<std::string>& names, base::ThreadPool& threads);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -22,7 +22,7 @@
 #include "prepare/input/band_choice.h"
 #include "prepare/input/white_level.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -337,4 +337,4 @@ fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, c
   return copies;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

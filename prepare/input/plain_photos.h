@@ -8,7 +8,7 @@
 #include "core/base/thread_pool.h"
 #include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // The folder whose photos all others read: `photo_root` where all photos are plain and no bands are chosen, else `folder`, absolute, which then holds
 // every photo under its name: 8-bit PNGs of converted ones (whatever the name's extension; programs look at the content), links to the others.
@@ -18,4 +18,4 @@ namespace skyquilt::prepare {
 std::filesystem::path MakePlainPhotos(const std::filesystem::path& photo_root, const std::string& bands, const std::filesystem::path& folder,
                                       PhotoSet& photos, base::ThreadPool& threads);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -6,7 +6,7 @@
 
 #include "prepare/input/tag_accuracy.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 Station MakeStation(const std::string& name, const geo::Rigid3d& cam_from_model, const survey::PhotoTags& tags) {
   Station station{.name = name,
@@ -53,4 +53,4 @@ int CountFlights(const std::vector<int>& flight) {
   return flight.empty() ? 0 : *std::max_element(flight.begin(), flight.end()) + 1;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -10,7 +10,7 @@
 #include "core/geo/transform.h"
 #include "core/survey/exif.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // Lists of stations are in name order.
 struct Station {
@@ -38,4 +38,4 @@ Eigen::Vector3d UpInCamera(double pitch_deg, double roll_deg);
 std::vector<int> SplitFlights(const std::vector<Station>& stations, double gap_s);
 int CountFlights(const std::vector<int>& flight);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 // Receivers without a stated accuracy (OpenDroneMap's default), and their heights, which are about half as accurate again.
@@ -23,4 +23,4 @@ TagAccuracy AccuracyOf(const survey::PhotoTags& tags) {
   return {std::max(horizontal_m, kLeastSigma_m), std::max(vertical_m, kLeastSigma_m)};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

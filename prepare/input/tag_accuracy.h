@@ -3,7 +3,7 @@
 
 #include "core/survey/exif.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // Stated or typical, one standard deviation per axis in metres, at least 0.02.
 struct TagAccuracy {
@@ -13,4 +13,4 @@ struct TagAccuracy {
 
 TagAccuracy AccuracyOf(const survey::PhotoTags& tags);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

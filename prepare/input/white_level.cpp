@@ -7,7 +7,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 // Of the tag's white: tags that are exceeded by more are wrong.
@@ -50,4 +50,4 @@ WhiteLevel FindWhite(std::span<const PhotoRange> photos) {
   return {largest, by};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

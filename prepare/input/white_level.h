@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 struct PhotoRange {
   double largest = 0.0;         // value that next to none of the photo's exceeds
@@ -24,4 +24,4 @@ struct WhiteLevel {
 // empty.
 WhiteLevel FindWhite(std::span<const PhotoRange> photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

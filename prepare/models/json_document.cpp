@@ -9,7 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 using Offsets = std::unordered_map<const nlohmann::json*, size_t>;
@@ -284,4 +284,4 @@ double JsonValue::NumberOr0(const std::string& key) const {
   return value ? value->Number() : 0.0;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

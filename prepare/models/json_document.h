@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 class JsonDocument;
 
@@ -82,4 +82,4 @@ class JsonDocument {
 // Number of the line in which the byte is, from 1.
 size_t LineOf(std::string_view text, size_t offset);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

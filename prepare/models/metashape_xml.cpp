@@ -14,7 +14,7 @@
 #include "core/geo/ecef.h"
 #include "prepare/models/json_document.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 namespace fs = std::filesystem;
@@ -248,4 +248,4 @@ bool LooksLikeMetashape(const fs::path& file) {
   return start.find("<document") != std::string_view::npos && start.find("<chunk") != std::string_view::npos;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -14,7 +14,7 @@
 #include "core/base/log.h"
 #include "prepare/models/json_document.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 namespace fs = std::filesystem;
@@ -167,4 +167,4 @@ InputModel ReadOpensfm(const fs::path& file, const ModelPhotos& photos) {
   return model;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

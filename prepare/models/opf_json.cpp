@@ -16,7 +16,7 @@
 #include "prepare/models/json_document.h"
 #include "prepare/models/opf_points.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 namespace fs = std::filesystem;
@@ -223,4 +223,4 @@ InputModel ReadOpf(const fs::path& file, const ModelPhotos& photos) {
   return model;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -8,7 +8,7 @@
 #include "core/base/file.h"
 #include "prepare/models/json_document.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 namespace fs = std::filesystem;
@@ -156,4 +156,4 @@ void AddOpfPoints(const fs::path& file, const std::unordered_map<uint64_t, uint3
   }
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

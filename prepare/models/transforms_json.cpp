@@ -8,7 +8,7 @@
 #include "prepare/models/json_document.h"
 #include "prepare/models/ply_points.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 constexpr const char* kFix = "Export the cameras again, for instance with 'ns-process-data'";
@@ -128,4 +128,4 @@ InputModel ReadTransforms(const std::vector<TransformsFile>& files, const ModelP
   return model;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 float AngleOf(int32_t dot) {
@@ -35,4 +35,4 @@ std::vector<FeatureMatch> MatchDescriptors(const kernel::PackedDescriptors& a, c
   return matches;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

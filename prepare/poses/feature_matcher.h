@@ -11,7 +11,7 @@
 
 #include "core/kernel/descriptors.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // Feature a of the first photo and b of the second, counted from 0 in the order of their descriptors.
 struct FeatureMatch {
@@ -32,4 +32,4 @@ struct MatchRules {
 // thread; the same result on every processor.
 std::vector<FeatureMatch> MatchDescriptors(const kernel::PackedDescriptors& a, const kernel::PackedDescriptors& b, const MatchRules& rules);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::tables {
 
 // With fixed decimals; empty for what is unknown (not finite).
 inline std::string CsvNumber(double value, int digits) {
@@ -23,4 +23,4 @@ inline std::string CsvText(const std::string& text) {
   return quoted + "\"";
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::tables

@@ -12,7 +12,7 @@
 #include "prepare/control/fit/update_model.h"
 #include "prepare/control/reading/control_points.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 // The first one straightens the bend that the scatter of the tags contains, the next ones count them as what they are.
@@ -23,7 +23,7 @@ constexpr double kArrived = 1.0;
 constexpr double kMostError = 1.1;
 
 double MedianError(const ControlBundle& marked) {
-  const BundleProblem& bundle = marked.bundle;
+  const bundle::BundleProblem& bundle = marked.bundle;
   std::vector<double> errors;
   for (uint32_t t = 0; t < marked.n_ties; ++t) {
     if (bundle.has_point[t] == 0) continue;
@@ -37,7 +37,7 @@ double MedianError(const ControlBundle& marked) {
 }
 
 // The farthest that a photo with a tag has moved, in standard deviations of its tag.
-double Moved(const std::vector<BundlePhoto>& before, const std::vector<BundlePhoto>& after) {
+double Moved(const std::vector<bundle::BundlePhoto>& before, const std::vector<bundle::BundlePhoto>& after) {
   double farthest = 0.0;
   for (size_t i = 0; i < after.size(); ++i) {
     if (after[i].gps) farthest = std::max(farthest, (after[i].centre - before[i].centre).cwiseQuotient(after[i].gps_sigma).norm());
@@ -63,9 +63,9 @@ AdjustedToTags AdjustToTags(const TagJob& job, base::ThreadPool& threads) {
     result.reason = "the model has too few points with observations";
     return result;
   }
-  for (BundleLens& lens : marked.bundle.lenses) lens.hold_focal = job.hold_focal;
+  for (bundle::BundleLens& lens : marked.bundle.lenses) lens.hold_focal = job.hold_focal;
   marked.Move(job.enu_from_model);
-  const std::vector<BundlePhoto> photos_before = marked.bundle.photos;
+  const std::vector<bundle::BundlePhoto> photos_before = marked.bundle.photos;
   result.error_before = MedianError(marked);
   const geo::EnuFrame frame(job.origin);
   std::vector<ControlState> no_states;
@@ -77,10 +77,10 @@ AdjustedToTags AdjustToTags(const TagJob& job, base::ThreadPool& threads) {
       return result;
     }
     // Without control points nothing else holds the frame.
-    for (BundlePhoto& photo : marked.bundle.photos) {
+    for (bundle::BundlePhoto& photo : marked.bundle.photos) {
       if (photo.gps) *photo.gps += shift;
     }
-    const std::vector<BundlePhoto> photos_then = marked.bundle.photos;
+    const std::vector<bundle::BundlePhoto> photos_then = marked.bundle.photos;
     if (!AdjustWithControl(marked, no_states, nullptr, threads, [&] { progress.Advance(); }).ok) {
       result.reason = "the adjustment found no solution";
       return result;
@@ -98,4 +98,4 @@ AdjustedToTags AdjustToTags(const TagJob& job, base::ThreadPool& threads) {
   return result;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

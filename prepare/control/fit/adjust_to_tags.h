@@ -13,12 +13,12 @@
 #include "core/survey/colmap_model.h"
 #include "prepare/input/station.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 struct TagJob {
   survey::ColmapModel& model;  // in any frame; see AdjustToTags
   const survey::ColmapObservations& observations;
-  const std::vector<Station>& stations;         // with the tags to use: corrected ones, without those that contradict
+  const std::vector<input::Station>& stations;  // with the tags to use: corrected ones, without those that contradict
   const std::vector<size_t>& image_of_station;  // index into model.images
   geo::Geodetic origin;
   geo::Similarity3d enu_from_model;  // about where it belongs
@@ -37,4 +37,4 @@ struct AdjustedToTags {
 // count with the accuracy that their scatter shows. Throws base::Interrupted. The same input gives the same bits, whatever the number of threads.
 AdjustedToTags AdjustToTags(const TagJob& job, base::ThreadPool& threads);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

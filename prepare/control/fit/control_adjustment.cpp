@@ -15,7 +15,7 @@
 #include "prepare/bundle/robust.h"
 #include "prepare/bundle/triangulate.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 using Eigen::Matrix3d;
@@ -48,20 +48,20 @@ class Adjuster {
     const std::vector<ControlState> points_before = points_;
     if (!Begin()) return Failed(before, points_before);
     for (int round = 0;; ++round) {
-      Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
+      bundle::Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
       MeasureTies(ties_);
       MeasureMarks();
       Choose();
       if (!Adjust(1e-9, 50)) return Failed(before, points_before);
       // Once more with the marks that agree with this result.
       if (JudgeMarks() && !Adjust(1e-9, 50)) return Failed(before, points_before);
-      const AdjustmentAccuracy accuracy(bundle_, tracks_, Stage(0.0, 0), shift_);
+      const bundle::AdjustmentAccuracy accuracy(bundle_, tracks_, Stage(0.0, 0), shift_);
       if (!accuracy.ok()) return Failed(before, points_before);
       Evaluate(accuracy);
       result.accuracy = accuracy.OfPlace();
       if (round >= kMaxRejected || !RejectWorst()) break;
     }
-    Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
+    bundle::Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
     result.ok = true;
     result.misfit = MisfitOf(points_);
     Inflate(&result);
@@ -72,13 +72,13 @@ class Adjuster {
     const ControlBundle before = marked_;
     bool solved = Begin();
     if (solved) {
-      Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
+      bundle::Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
       MeasureTies(ties_);
       Choose();
       solved = Adjust(1e-9, 50);
     }
     if (solved) {
-      Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
+      bundle::Triangulate(bundle_, all_ties_, kTieThreshold, threads_);
     } else {
       marked_ = before;
     }
@@ -99,7 +99,7 @@ class Adjuster {
     return {};
   }
 
-  BundleStage Stage(double tolerance, int iterations) const {
+  bundle::BundleStage Stage(double tolerance, int iterations) const {
     return {.loss = 2.5, .gentle = true, .max_iterations = iterations, .tolerance = tolerance, .known = known_, .known_loss = kKnownLoss};
   }
 
@@ -111,13 +111,13 @@ class Adjuster {
       known_.push_back(points_[i].Known(marked_.TrackOfPoint(i)));
       tracks_.push_back(marked_.TrackOfPoint(i));
     }
-    return AdjustBundle(bundle_, tracks_, Stage(tolerance, iterations), on_iteration_, shift_);
+    return bundle::AdjustBundle(bundle_, tracks_, Stage(tolerance, iterations), on_iteration_, shift_);
   }
 
   void Choose() {
     std::vector<char> usable = bundle_.has_point;
     std::fill(usable.begin() + static_cast<std::ptrdiff_t>(marked_.n_ties), usable.end(), char{0});
-    ties_ = ChooseTracks(bundle_, usable, bundle_.agrees, kTiesPerPhoto);
+    ties_ = bundle::ChooseTracks(bundle_, usable, bundle_.agrees, kTiesPerPhoto);
   }
 
   // Features' sigma from the median error of the agreeing ones; the adjustment has taken a share of it.
@@ -137,7 +137,7 @@ class Adjuster {
     if (errors.empty()) return;
     const double residuals = 2.0 * static_cast<double>(errors.size());
     const double share = std::max(0.1, (residuals - unknowns) / residuals);
-    const double sigma = marked_.tie_sigma * base::UpperMedian(errors) / kRayleighMedian / std::sqrt(share);
+    const double sigma = marked_.tie_sigma * base::UpperMedian(errors) / bundle::kRayleighMedian / std::sqrt(share);
     marked_.SetAccuracy(std::max(sigma, kLeastTieSigma), marked_.mark_sigma_px);
   }
 
@@ -168,7 +168,7 @@ class Adjuster {
     const double said = first_mark_sigma_px_;
     double sigma_px = said;
     if (!errors_px.empty()) {
-      const double seen = base::UpperMedian(errors_px) / kRayleighMedian / std::sqrt((residuals - unknowns) / residuals);
+      const double seen = base::UpperMedian(errors_px) / bundle::kRayleighMedian / std::sqrt((residuals - unknowns) / residuals);
       sigma_px = std::sqrt((kPriorWeight * said * said + (residuals - unknowns) * seen * seen) / (kPriorWeight + residuals - unknowns));
     }
     marked_.SetAccuracy(marked_.tie_sigma, std::clamp(sigma_px, kLeast * said, kMost * said));
@@ -202,7 +202,7 @@ class Adjuster {
     }
   }
 
-  void Evaluate(const AdjustmentAccuracy& accuracy) {
+  void Evaluate(const bundle::AdjustmentAccuracy& accuracy) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     for (size_t i = 0; i < points_.size(); ++i) {
       ControlState& point = points_[i];
@@ -210,7 +210,7 @@ class Adjuster {
       const uint32_t t = marked_.TrackOfPoint(i);
       if (bundle_.has_point[t] == 0) continue;
       point.error_m = bundle_.point[t] - point.given;
-      const KnownPoint known = point.Known(t);
+      const bundle::KnownPoint known = point.Known(t);
       const std::optional<Matrix3d> covariance = accuracy.OfPoint(t, point.used ? &known : nullptr);
       if (covariance) {
         const Eigen::Array3d of_point = covariance->diagonal().array(), given = point.sigma_m.array().square();
@@ -218,7 +218,7 @@ class Adjuster {
         const Eigen::Array3d of_error = point.used ? Eigen::Array3d((given - of_point).max(0.0)) : Eigen::Array3d(given + of_point);
         point.error_sigma_m = of_error.sqrt();
         Matrix3d without;
-        const Vector3d own = KnownWeight(known, bundle_.point[t], kKnownLoss) * point.sigma_m.cwiseAbs2().cwiseInverse();
+        const Vector3d own = bundle::KnownWeight(known, bundle_.point[t], kKnownLoss) * point.sigma_m.cwiseAbs2().cwiseInverse();
         if (point.used && LeaveOut(point.error_m, *covariance, own, &point.left_out_error_m, &without)) {
           point.left_out_sigma_m = (without.diagonal().array() + given).sqrt();
         }
@@ -267,13 +267,13 @@ class Adjuster {
   }
 
   ControlBundle& marked_;
-  BundleProblem& bundle_;
+  bundle::BundleProblem& bundle_;
   std::vector<ControlState>& points_;
   Vector3d* shift_;
   base::ThreadPool& threads_;
   const std::function<void()>& on_iteration_;
   std::vector<uint32_t> all_ties_, ties_, tracks_;
-  std::vector<KnownPoint> known_;
+  std::vector<bundle::KnownPoint> known_;
   double first_mark_sigma_px_ = 0.0;
 };
 
@@ -305,13 +305,13 @@ bool LeaveOut(const Vector3d& error_m, const Matrix3d& covariance, const Vector3
 void PlaceUnusedPoints(ControlBundle& marked, const std::vector<ControlState>& points, double threshold) {
   for (size_t i = 0; i < points.size(); ++i) {
     if (points[i].used) continue;
-    TriangulateTrack(marked.bundle, marked.TrackOfPoint(i), threshold);
-    RefineByMarks(marked.bundle, marked.TrackOfPoint(i));
+    bundle::TriangulateTrack(marked.bundle, marked.TrackOfPoint(i), threshold);
+    bundle::RefineByMarks(marked.bundle, marked.TrackOfPoint(i));
   }
 }
 
 void JudgeUsedMarks(ControlBundle& marked, const std::vector<ControlState>& points, double threshold) {
-  BundleProblem& bundle = marked.bundle;
+  bundle::BundleProblem& bundle = marked.bundle;
   for (size_t i = 0; i < points.size(); ++i) {
     if (!points[i].used) continue;
     const uint32_t t = marked.TrackOfPoint(i);
@@ -342,4 +342,4 @@ double MisfitOf(const std::vector<ControlState>& points) {
   return n >= kLeast ? std::sqrt(squares / n) : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -10,7 +10,7 @@
 #include "core/geo/place_accuracy.h"
 #include "prepare/control/fit/control_bundle.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // A control or check point while the survey is fitted to it.
 struct ControlState {
@@ -25,7 +25,7 @@ struct ControlState {
   Eigen::Vector3d left_out_sigma_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
   bool HasHeight() const { return std::isfinite(sigma_m.z()); }
-  KnownPoint Known(uint32_t track) const { return {track, given, sigma_m}; }
+  bundle::KnownPoint Known(uint32_t track) const { return {track, given, sigma_m}; }
 };
 
 struct ControlAdjustment {
@@ -63,4 +63,4 @@ void JudgeUsedMarks(ControlBundle& marked, const std::vector<ControlState>& poin
 // The root mean square of the left-out errors over their accuracies, of the axes that the others determine; NaN for fewer than six of them.
 double MisfitOf(const std::vector<ControlState>& points);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -7,7 +7,7 @@
 
 #include "core/base/errors.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 struct TrackPixel {
@@ -15,28 +15,28 @@ struct TrackPixel {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };
 
-BundleLens LensFor(const camera::Camera& camera, bool* known) {
-  BundleLens lens;
+bundle::BundleLens LensFor(const camera::Camera& camera, bool* known) {
+  bundle::BundleLens lens;
   lens.camera = camera;
-  const std::optional<Lens> numbers = LensOf(camera);
+  const std::optional<bundle::Lens> numbers = bundle::LensOf(camera);
   if (!numbers) {
     *known = false;
     const Eigen::Vector2d middle = camera.PrincipalPoint();
     lens.camera.model = camera::CameraModel::kPinhole;
     lens.camera.params = {camera.FocalX(), camera.FocalY(), middle.x(), middle.y()};
   }
-  lens.numbers = lens.initial = numbers ? *numbers : *LensOf(lens.camera);
-  lens.unit_px = camera.width / kUnitWidth_px;
+  lens.numbers = lens.initial = numbers ? *numbers : *bundle::LensOf(lens.camera);
+  lens.unit_px = camera.width / bundle::kUnitWidth_px;
   return lens;
 }
 
 // Where the bundle's lens shows what the photo shows at `pixel`.
-std::optional<Eigen::Vector2d> PixelInBundle(const camera::Camera& camera, const BundleLens& lens, const Eigen::Vector2d& pixel) {
+std::optional<Eigen::Vector2d> PixelInBundle(const camera::Camera& camera, const bundle::BundleLens& lens, const Eigen::Vector2d& pixel) {
   if (camera.model == lens.camera.model) return pixel;
   const Eigen::Vector3d ray = camera.RayFromImg(pixel);
   constexpr double kLeastDepth = 0.05;  // flatter rays are far outside of any picture without distortion
   if (!(ray.z() > kLeastDepth)) return std::nullopt;
-  return Project(lens.numbers, ray, nullptr);
+  return bundle::Project(lens.numbers, ray, nullptr);
 }
 
 class BundleBuilder {
@@ -49,7 +49,7 @@ class BundleBuilder {
       result_.bundle.lenses.push_back(LensFor(camera, &result_.known_lenses));
     }
     for (const survey::ColmapImage& image : job_.model.images) {
-      BundlePhoto photo;
+      bundle::BundlePhoto photo;
       photo.cam_from_enu = image.cam_from_world.rotation.normalized();
       photo.centre = image.cam_from_world.OriginInSource();
       photo.placed = true;
@@ -147,21 +147,21 @@ class BundleBuilder {
 void ControlBundle::SetAccuracy(double new_tie_sigma, double new_mark_sigma_px) {
   tie_sigma = new_tie_sigma;
   mark_sigma_px = new_mark_sigma_px;
-  for (BundleLens& lens : bundle.lenses) lens.unit_px = tie_sigma * lens.camera.width / kUnitWidth_px;
+  for (bundle::BundleLens& lens : bundle.lenses) lens.unit_px = tie_sigma * lens.camera.width / bundle::kUnitWidth_px;
   for (uint32_t e = bundle.tracks.first[n_ties]; e < bundle.tracks.entries.size(); ++e) {
-    const BundlePhoto& photo = bundle.photos[bundle.tracks.entries[e].photo];
+    const bundle::BundlePhoto& photo = bundle.photos[bundle.tracks.entries[e].photo];
     bundle.sigma[e] = mark_sigma_px / bundle.lenses[static_cast<size_t>(photo.lens)].unit_px;
   }
 }
 
 double ControlBundle::MarkThreshold(double times) const {
   double unit_px = 0.0;
-  for (const BundleLens& lens : bundle.lenses) unit_px = std::max(unit_px, lens.unit_px);
+  for (const bundle::BundleLens& lens : bundle.lenses) unit_px = std::max(unit_px, lens.unit_px);
   return times * std::hypot(mark_sigma_px, unit_px) / unit_px;
 }
 
 void ControlBundle::Move(const geo::Similarity3d& b_from_a) {
-  for (BundlePhoto& photo : bundle.photos) {
+  for (bundle::BundlePhoto& photo : bundle.photos) {
     photo.centre = b_from_a * photo.centre;
     photo.cam_from_enu = (photo.cam_from_enu * b_from_a.rotation.conjugate()).normalized();
   }
@@ -172,4 +172,4 @@ ControlBundle MakeControlBundle(const ControlJob& job) {
   return BundleBuilder(job).Build();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

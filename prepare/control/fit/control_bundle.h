@@ -10,11 +10,11 @@
 #include "prepare/bundle/bundle_problem.h"
 #include "prepare/control/fit/fit_control.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 struct ControlBundle {
   // Photos in the order of the model's images, lenses in that of its cameras. Tracks: those of the model's points, then one for each control point.
-  BundleProblem bundle;
+  bundle::BundleProblem bundle;
   size_t n_ties = 0;                                       // tracks of the model's points
   std::vector<size_t> point_of_tie;                        // per tie track, index into the model's points
   std::vector<std::vector<std::optional<uint32_t>>> mark;  // per control point and mark: its entry; nothing when its photo has no pose
@@ -34,4 +34,4 @@ struct ControlBundle {
 // adjustment does not know are moved to where a lens without distortion would show them.
 ControlBundle MakeControlBundle(const ControlJob& job);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

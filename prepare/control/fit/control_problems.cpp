@@ -5,7 +5,7 @@
 #include "core/base/log.h"
 #include "core/base/text.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 std::string LineOf(const ControlPoint& point) {
@@ -90,4 +90,4 @@ std::vector<survey::Problem> ControlProblems(const ControlPoints& control, const
   return problems;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

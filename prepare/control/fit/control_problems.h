@@ -10,7 +10,7 @@
 #include "prepare/control/fit/control_similarity.h"
 #include "prepare/control/reading/control_points.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // Why the survey cannot be placed by control points, as a sentence without its full stop, and what to do.
 struct NoControl {
@@ -25,4 +25,4 @@ enum class NotAdjusted { kNo, kNoObservations, kUnknownLens, kNoSolution };
 // The worst first. `misfit`: see ControlAdjustment; `fit` is complete.
 std::vector<survey::Problem> ControlProblems(const ControlPoints& control, const survey::ControlFit& fit, NotAdjusted not_adjusted, double misfit);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

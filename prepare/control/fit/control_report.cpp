@@ -9,7 +9,7 @@
 #include "core/geo/enu_frame.h"
 #include "prepare/tables/csv_field.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -34,12 +34,12 @@ void WriteControlTable(const survey::Survey& survey, const std::filesystem::path
       "label,use,east_m,north_m,up_m,error_east_m,error_north_m,error_up_m,sigma_east_m,sigma_north_m,sigma_up_m,left_out_error_east_m,"
       "left_out_error_north_m,left_out_error_up_m,error_px,marks_used,marks_given,gsd_m\n";
   for (const survey::ControlPointFit& point : survey.control.points) {
-    text += CsvText(point.label) + "," + survey::NameOf(point.use) + ",";
+    text += tables::CsvText(point.label) + "," + survey::NameOf(point.use) + ",";
     for (const Eigen::Vector3d& v : {point.given_in_enu, point.error_m, point.sigma_m, point.left_out_error_m}) {
-      for (const double value : {v.x(), v.y(), v.z()}) text += CsvNumber(value, 4) + ",";
+      for (const double value : {v.x(), v.y(), v.z()}) text += tables::CsvNumber(value, 4) + ",";
     }
-    text += CsvNumber(point.error_px, 3) + "," + std::to_string(UsedMarks(point)) + "," + std::to_string(point.marks.size()) + "," +
-            CsvNumber(point.gsd_m, 4) + "\n";
+    text += tables::CsvNumber(point.error_px, 3) + "," + std::to_string(UsedMarks(point)) + "," + std::to_string(point.marks.size()) + "," +
+            tables::CsvNumber(point.gsd_m, 4) + "\n";
   }
   base::WriteFileAtomically(file, text);
 }
@@ -84,4 +84,4 @@ void WriteControlReport(const survey::Survey& survey, const std::filesystem::pat
   }
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -5,7 +5,7 @@
 
 #include "core/survey/survey.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // CSV, one line per point in the order of the file: label, use (control, check, rejected, unseen), given ENU position, error (estimated less given),
 // its sigma, error when left out, pixel error, marks used and given, GSD. Metres, pixels. Unknown values are empty. Throws base::InputError when the
@@ -17,4 +17,4 @@ void WriteControlMap(const survey::Survey& survey, const std::filesystem::path& 
 // geo_control.csv and, with a geo-reference, control.geojson in the folder. Removes those of an earlier run that no longer apply.
 void WriteControlReport(const survey::Survey& survey, const std::filesystem::path& folder);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

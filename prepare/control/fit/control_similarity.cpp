@@ -10,7 +10,7 @@
 #include "core/linear/linear.h"
 #include "prepare/bundle/adjustment_accuracy.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 using Eigen::Matrix3d;
@@ -118,7 +118,7 @@ void RefineSimilarity(const std::vector<ControlPair>& pairs, ControlSimilarity* 
     for (size_t i = 0; i < pairs.size(); ++i) {
       if (fit->agrees[i] == 0) continue;
       const Vector3d x = transform * pairs[i].in_model, error = x - pairs[i].in_enu;
-      const Eigen::Matrix<double, 3, 7> jacobian = SimilarityJacobian(x - fit->middle);
+      const Eigen::Matrix<double, 3, 7> jacobian = bundle::SimilarityJacobian(x - fit->middle);
       const Vector3d weight = SigmaWithMarks(pairs[i], transform.scale).cwiseAbs2().cwiseInverse();
       normal += jacobian.transpose() * weight.asDiagonal() * jacobian;
       gradient += jacobian.transpose() * weight.asDiagonal() * error;
@@ -202,7 +202,7 @@ class TripleSearch {
 }  // namespace
 
 Matrix3d ControlSimilarity::CovarianceAt(const Vector3d& x_in_enu) const {
-  const Eigen::Matrix<double, 3, 7> jacobian = SimilarityJacobian(x_in_enu - middle);
+  const Eigen::Matrix<double, 3, 7> jacobian = bundle::SimilarityJacobian(x_in_enu - middle);
   return jacobian * covariance * jacobian.transpose();
 }
 
@@ -237,4 +237,4 @@ ControlSimilarity FitControlSimilarity(const std::vector<ControlPair>& pairs) {
   return fit;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

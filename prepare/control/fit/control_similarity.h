@@ -7,7 +7,7 @@
 
 #include "core/geo/transform.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 struct ControlPair {
   Eigen::Vector3d in_model = Eigen::Vector3d::Zero();  // from its marks
@@ -37,4 +37,4 @@ struct ControlSimilarity {
 // (Rousseeuw, Least Median of Squares Regression, 1984).
 ControlSimilarity FitControlSimilarity(const std::vector<ControlPair>& pairs);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -19,7 +19,7 @@
 #include "prepare/control/fit/tag_noise.h"
 #include "prepare/control/fit/update_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 using Eigen::Matrix3d;
@@ -82,8 +82,8 @@ class Fitter {
 
   PlacedByControl Run() {
     for (size_t i = 0; i < job_.control.points.size(); ++i) {
-      TriangulateTrack(bundle_, marked_.TrackOfPoint(i), kRoughThreshold);
-      RefineByMarks(bundle_, marked_.TrackOfPoint(i));
+      bundle::TriangulateTrack(bundle_, marked_.TrackOfPoint(i), kRoughThreshold);
+      bundle::RefineByMarks(bundle_, marked_.TrackOfPoint(i));
     }
     const bool any_control =
         std::any_of(job_.control.points.begin(), job_.control.points.end(), [](const ControlPoint& point) { return !point.check; });
@@ -100,7 +100,7 @@ class Fitter {
     }
     marked_.Move(similarity.enu_from_model);
     RecoverByMarks();
-    const std::vector<BundlePhoto> photos_before = bundle_.photos;
+    const std::vector<bundle::BundlePhoto> photos_before = bundle_.photos;
     PlacedByControl placed;
     placed.origin = origin;
     placed.scale = similarity.enu_from_model.scale;
@@ -135,7 +135,7 @@ class Fitter {
     int n = 0;
     for (uint32_t e = bundle_.tracks.first[t]; e < bundle_.tracks.first[t + 1]; ++e) {
       if (bundle_.agrees[e] == 0) continue;
-      const BundlePhoto& photo = bundle_.photos[bundle_.tracks.entries[e].photo];
+      const bundle::BundlePhoto& photo = bundle_.photos[bundle_.tracks.entries[e].photo];
       const double depth = (photo.cam_from_enu * (bundle_.point[t] - photo.centre)).z();
       sum += depth / bundle_.lenses[static_cast<size_t>(photo.lens)].numbers[0];
       ++n;
@@ -201,7 +201,7 @@ class Fitter {
       ControlState& state = states_[agreeing_index[k]];
       const Vector3d x = without.enu_from_model * agreeing[k].in_model;
       state.left_out_error_m = x - state.given;
-      const auto of_marks = CovarianceByMarks(bundle_, marked_.TrackOfPoint(agreeing_index[k]));
+      const auto of_marks = bundle::CovarianceByMarks(bundle_, marked_.TrackOfPoint(agreeing_index[k]));
       const Matrix3d covariance = without.CovarianceAt(x) + (of_marks ? *of_marks : Matrix3d::Zero());
       state.left_out_sigma_m = (covariance.diagonal() + state.sigma_m.cwiseAbs2()).cwiseSqrt();
       if (!state.HasHeight()) state.left_out_error_m.z() = state.left_out_sigma_m.z() = kNan;
@@ -223,7 +223,7 @@ class Fitter {
     const uint32_t t = marked_.TrackOfPoint(i);
     if (bundle_.has_point[t] == 0) return;
     state.error_m = bundle_.point[t] - state.given;
-    if (const auto of_marks = CovarianceByMarks(bundle_, t)) {
+    if (const auto of_marks = bundle::CovarianceByMarks(bundle_, t)) {
       state.error_sigma_m = ((place + *of_marks).diagonal() + state.sigma_m.cwiseAbs2()).cwiseSqrt();
     }
     if (!state.HasHeight()) state.error_m.z() = state.error_sigma_m.z() = kNan;
@@ -235,7 +235,7 @@ class Fitter {
     states_ = StatesOf(job_.control, place.origin);
     marked_.Move(place.enu_from_model);
     Vector3d middle = Vector3d::Zero();
-    for (const BundlePhoto& photo : bundle_.photos) middle += photo.centre / static_cast<double>(bundle_.photos.size());
+    for (const bundle::BundlePhoto& photo : bundle_.photos) middle += photo.centre / static_cast<double>(bundle_.photos.size());
     const geo::PlaceAccuracy& accuracy = place.accuracy;
     const auto square = [](double sigma) { return std::isfinite(sigma) ? sigma * sigma : 0.0; };
     constexpr double kRadians = std::numbers::pi / 180.0;
@@ -247,7 +247,7 @@ class Fitter {
     covariance(5, 5) = square(kRadians * accuracy.yaw_deg);
     covariance(6, 6) = square(0.01 * accuracy.scale_percent);
     for (size_t i = 0; i < states_.size(); ++i) {
-      const Eigen::Matrix<double, 3, 7> jacobian = SimilarityJacobian(bundle_.point[marked_.TrackOfPoint(i)] - middle);
+      const Eigen::Matrix<double, 3, 7> jacobian = bundle::SimilarityJacobian(bundle_.point[marked_.TrackOfPoint(i)] - middle);
       SetError(i, jacobian * covariance * jacobian.transpose());
     }
     PlacedByControl compared;
@@ -327,7 +327,7 @@ class Fitter {
   const ControlJob& job_;
   base::ThreadPool& threads_;
   ControlBundle marked_;
-  BundleProblem& bundle_;
+  bundle::BundleProblem& bundle_;
   std::vector<ControlState> states_;
 };
 
@@ -337,4 +337,4 @@ PlacedByControl FitControl(const ControlJob& job, base::ThreadPool& threads) {
   return Fitter(job, threads).Run();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

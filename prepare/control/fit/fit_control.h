@@ -18,7 +18,7 @@
 #include "prepare/control/reading/control_points.h"
 #include "prepare/input/station.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // Points of the model with observations in two photos or more; with fewer there is no adjustment.
 constexpr size_t kLeastTies = 50;
@@ -35,7 +35,7 @@ struct ControlJob {
   survey::ColmapModel& model;  // in any frame; see FitControl
   // Of the model's points; empty when the model has none: then there is no adjustment.
   const survey::ColmapObservations& observations;
-  const std::vector<Station>& stations;         // the photos that marks may be on, by Station::name
+  const std::vector<input::Station>& stations;  // the photos that marks may be on, by Station::name
   const std::vector<size_t>& image_of_station;  // index into model.images
   const ControlPoints& control;
   std::optional<PlaceWithoutControl> otherwise = {};
@@ -59,4 +59,4 @@ struct PlacedByControl {
 // same bits, whatever the number of threads.
 PlacedByControl FitControl(const ControlJob& job, base::ThreadPool& threads);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

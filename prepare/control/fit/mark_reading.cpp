@@ -3,7 +3,7 @@
 #include "prepare/bundle/triangulate.h"
 #include "prepare/control/fit/control_bundle.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 // Pixels of a photo of 1600 pixels width: right marks in a model that bends a little.
@@ -15,7 +15,7 @@ size_t CountAgreeing(const ControlJob& job, const ControlPoints& control) {
       {.model = job.model, .observations = job.observations, .stations = job.stations, .image_of_station = job.image_of_station, .control = control});
   size_t n = 0;
   for (size_t i = 0; i < control.points.size(); ++i) {
-    TriangulateTrack(marked.bundle, marked.TrackOfPoint(i), kAgreeing);
+    bundle::TriangulateTrack(marked.bundle, marked.TrackOfPoint(i), kAgreeing);
     for (size_t k = 0; k < control.points[i].marks.size(); ++k) {
       const std::optional<uint32_t> entry = marked.mark[i][k];
       if (job.control.points[i].marks[k].if_upright && entry && marked.bundle.agrees[*entry] != 0) ++n;
@@ -55,4 +55,4 @@ void Settle(MarkReading reading, ControlPoints& control) {
   }
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

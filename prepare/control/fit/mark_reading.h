@@ -8,7 +8,7 @@
 #include "prepare/control/fit/fit_control.h"
 #include "prepare/control/reading/control_points.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 enum class MarkReading { kStored, kUpright, kUndecided };
 
@@ -25,4 +25,4 @@ ReadingVotes CountReadings(const ControlJob& job);
 // Leaves no mark open: moves those that are to where the reading has them, when it is kUpright.
 void Settle(MarkReading reading, ControlPoints& control);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -8,7 +8,7 @@
 #include "core/base/order_statistics.h"
 #include "prepare/bundle/robust.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 struct TaggedPhoto {
@@ -18,11 +18,11 @@ struct TaggedPhoto {
 };
 
 // In the order of time where it is known.
-std::vector<TaggedPhoto> TaggedPhotos(const std::vector<Station>& stations, const std::vector<size_t>& image_of_station, const geo::EnuFrame& frame,
-                                      const BundleProblem& bundle) {
+std::vector<TaggedPhoto> TaggedPhotos(const std::vector<input::Station>& stations, const std::vector<size_t>& image_of_station,
+                                      const geo::EnuFrame& frame, const bundle::BundleProblem& bundle) {
   std::vector<size_t> order(stations.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  const bool timed = std::all_of(stations.begin(), stations.end(), [](const Station& station) { return station.time_s.has_value(); });
+  const bool timed = std::all_of(stations.begin(), stations.end(), [](const input::Station& station) { return station.time_s.has_value(); });
   if (timed) std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return *stations[a].time_s < *stations[b].time_s; });
   std::vector<TaggedPhoto> tagged;
   for (const size_t i : order) {
@@ -61,7 +61,7 @@ AxisNoise NoiseOf(const std::vector<TaggedPhoto>& tagged, int axis) {
   if (differences.size() < kLeastTags) return noise;
   noise.shift_m = base::Median(differences);
   const double sigma_m = std::max(base::Nmad(differences), kLeastSigma_m);
-  SerialCorrelation correlation;
+  bundle::SerialCorrelation correlation;
   for (const double difference : differences) correlation.Add(0, std::clamp(difference - noise.shift_m, -3.0 * sigma_m, 3.0 * sigma_m));
   noise.sigma_m = sigma_m * std::sqrt(correlation.VarianceFactor());
   return noise;
@@ -69,8 +69,8 @@ AxisNoise NoiseOf(const std::vector<TaggedPhoto>& tagged, int axis) {
 
 }  // namespace
 
-bool UseTagScatter(const std::vector<Station>& stations, const std::vector<size_t>& image_of_station, const geo::EnuFrame& frame,
-                   BundleProblem& bundle, Eigen::Vector3d* shift) {
+bool UseTagScatter(const std::vector<input::Station>& stations, const std::vector<size_t>& image_of_station, const geo::EnuFrame& frame,
+                   bundle::BundleProblem& bundle, Eigen::Vector3d* shift) {
   const std::vector<TaggedPhoto> tagged = TaggedPhotos(stations, image_of_station, frame, bundle);
   if (tagged.size() < kLeastTags) return false;
   Eigen::Vector3d sigma;
@@ -81,7 +81,7 @@ bool UseTagScatter(const std::vector<Station>& stations, const std::vector<size_
     sigma[axis] = noise.sigma_m;
   }
   for (const TaggedPhoto& one : tagged) {
-    BundlePhoto& photo = bundle.photos[one.photo];
+    bundle::BundlePhoto& photo = bundle.photos[one.photo];
     photo.gps = one.tag;
     photo.gps_sigma = sigma;
     if (!std::isfinite(one.difference.z())) photo.gps_sigma.z() = std::numeric_limits<double>::infinity();
@@ -89,4 +89,4 @@ bool UseTagScatter(const std::vector<Station>& stations, const std::vector<size_
   return true;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -2,12 +2,12 @@
 
 #include <unordered_map>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 // Mean of where the photos that see a point carry it.
-Eigen::Vector3d CarriedByPhotos(const Eigen::Vector3d& x_in_enu, const std::vector<uint32_t>& photos, const std::vector<BundlePhoto>& before,
-                                const std::vector<BundlePhoto>& after) {
+Eigen::Vector3d CarriedByPhotos(const Eigen::Vector3d& x_in_enu, const std::vector<uint32_t>& photos, const std::vector<bundle::BundlePhoto>& before,
+                                const std::vector<bundle::BundlePhoto>& after) {
   if (photos.empty()) return x_in_enu;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const uint32_t i : photos) {
@@ -17,7 +17,7 @@ Eigen::Vector3d CarriedByPhotos(const Eigen::Vector3d& x_in_enu, const std::vect
 }
 
 // Mean reprojection error of the agreeing observations, pixels of the photos.
-double MeanError(const BundleProblem& bundle, uint32_t track) {
+double MeanError(const bundle::BundleProblem& bundle, uint32_t track) {
   double sum = 0.0;
   int n = 0;
   for (uint32_t e = bundle.tracks.first[track]; e < bundle.tracks.first[track + 1]; ++e) {
@@ -30,12 +30,12 @@ double MeanError(const BundleProblem& bundle, uint32_t track) {
 
 }  // namespace
 
-void UpdateModel(const ControlBundle& marked, const geo::Similarity3d& enu_from_model, const std::vector<BundlePhoto>& photos_before, bool adjusted,
-                 survey::ColmapModel& model) {
-  const BundleProblem& bundle = marked.bundle;
+void UpdateModel(const ControlBundle& marked, const geo::Similarity3d& enu_from_model, const std::vector<bundle::BundlePhoto>& photos_before,
+                 bool adjusted, survey::ColmapModel& model) {
+  const bundle::BundleProblem& bundle = marked.bundle;
   std::unordered_map<uint32_t, uint32_t> photo_of_image;
   for (uint32_t i = 0; i < model.images.size(); ++i) {
-    const BundlePhoto& photo = bundle.photos[i];
+    const bundle::BundlePhoto& photo = bundle.photos[i];
     model.images[i].cam_from_world = {photo.cam_from_enu, -(photo.cam_from_enu * photo.centre)};
     photo_of_image.emplace(model.images[i].id, i);
   }
@@ -56,7 +56,7 @@ void UpdateModel(const ControlBundle& marked, const geo::Similarity3d& enu_from_
     point.error_px = MeanError(bundle, t);
   }
   size_t lens = 0;
-  for (auto& [id, camera] : model.cameras) camera = CameraOf(bundle.lenses[lens++].numbers, camera);
+  for (auto& [id, camera] : model.cameras) camera = bundle::CameraOf(bundle.lenses[lens++].numbers, camera);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

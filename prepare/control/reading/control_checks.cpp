@@ -15,7 +15,7 @@
 #include "core/linear/linear.h"
 #include "prepare/tables/text_table.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 constexpr double kFar_m = 100e3;
@@ -157,9 +157,9 @@ void CheckNear(const ControlPoints& points, const std::vector<geo::Geodetic>& ta
   for (const ControlPoint& point : points.points) {
     const double distance_m = Distance_m(point.place, *middle);
     if (distance_m <= kFar_m) continue;
-    FailTableLine(points.file, point.line,
-                  fmt::format("{} in {} is {:.0f} km from the photos, by their GPS tags", point.label, points.crs, 1e-3 * distance_m),
-                  Mistakes(point.given.head<2>(), points.crs_definition, *middle).Advice());
+    tables::FailTableLine(points.file, point.line,
+                          fmt::format("{} in {} is {:.0f} km from the photos, by their GPS tags", point.label, points.crs, 1e-3 * distance_m),
+                          Mistakes(point.given.head<2>(), points.crs_definition, *middle).Advice());
   }
 }
 
@@ -175,4 +175,4 @@ std::string CheckGeometry(const ControlPoints& points, bool have_place) {
   return points.file + ": " + problem + "; the place comes from the photos' GPS tags, and the points are only compared with it";
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -7,7 +7,7 @@
 #include "core/geo/geodetic.h"
 #include "prepare/control/reading/control_points.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // Throws base::InputError when a point is more than 100 km from the middle (median) of the photos' tags: the message has the line, the distance and,
 // if one of them brings the point near, the likely mistake: exchanged axes, another UTM zone or hemisphere, metres for feet or the reverse, a sign.
@@ -19,4 +19,4 @@ void CheckNear(const ControlPoints& points, const std::vector<geo::Geodetic>& ta
 // wrong and that the points are only compared, otherwise base::InputError is thrown. Empty: all is well.
 std::string CheckGeometry(const ControlPoints& points, bool have_place);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

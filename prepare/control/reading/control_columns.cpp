@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 using Names = std::map<std::string, ControlColumn>;
@@ -115,4 +115,4 @@ std::vector<std::string> SplitNames(const std::string& text) {
   return names;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

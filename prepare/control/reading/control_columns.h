@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 enum class ControlColumn {
   kLabel,
@@ -57,4 +57,4 @@ class ControlColumns {
 // The names in a text like "label,east,north,up".
 std::vector<std::string> SplitNames(const std::string& text);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

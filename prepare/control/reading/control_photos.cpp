@@ -10,7 +10,7 @@
 #include "core/survey/orientation.h"
 #include "prepare/tables/text_table.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 std::vector<std::string> NamesOf(const std::vector<PhotoSize>& photos) {
@@ -106,19 +106,20 @@ std::string TurnedAdvice(const RawMark& mark, const PhotoSize& photo) {
   const Eigen::Vector2i stored = Stored(photo), marked = MarkedSize(mark, photo, shown);
   const std::string turned = TurnedAdvice(mark, photo);
   if (!HaveOneShape(marked, ShownSize(photo, shown))) {
-    FailTableLine(file, mark.line,
-                  fmt::format("the mark of {} was made in {} with {}x{} pixels, which now has {}x{}", mark.label, photo.name, marked.x(), marked.y(),
-                              stored.x(), stored.y()),
-                  turned.empty() ? "Give the photos that were marked, neither turned nor cropped" : turned);
+    tables::FailTableLine(file, mark.line,
+                          fmt::format("the mark of {} was made in {} with {}x{} pixels, which now has {}x{}", mark.label, photo.name, marked.x(),
+                                      marked.y(), stored.x(), stored.y()),
+                          turned.empty() ? "Give the photos that were marked, neither turned nor cropped" : turned);
   }
   std::string advice = "Correct the mark, or state the size of the photo that was marked in columns image_width and image_height of the marks";
   if (mark.origin == PixelOrigin::kMiddle) advice = "Correct the mark: OpenSfM counts from the image's middle in parts of its larger side";
   if (shown.upright) advice = "Correct the mark: the others show that they were made in upright photos";
-  FailTableLine(file, mark.line,
-                fmt::format("the mark of {} at x {:g}, y {:g} is outside {}, which has {}x{} pixels{}", mark.label, mark.pixel.x(), mark.pixel.y(),
-                            photo.name, marked.x(), marked.y(), shown.upright && survey::ExchangesSides(photo.orientation) ? " upright" : ""),
-                // One mark alone is rather a slip.
-                turned.empty() || n_misfits < 2 ? advice : turned);
+  tables::FailTableLine(
+      file, mark.line,
+      fmt::format("the mark of {} at x {:g}, y {:g} is outside {}, which has {}x{} pixels{}", mark.label, mark.pixel.x(), mark.pixel.y(), photo.name,
+                  marked.x(), marked.y(), shown.upright && survey::ExchangesSides(photo.orientation) ? " upright" : ""),
+      // One mark alone is rather a slip.
+      turned.empty() || n_misfits < 2 ? advice : turned);
 }
 
 }  // namespace
@@ -166,4 +167,4 @@ std::vector<StoredMark> StoredPixels(const std::filesystem::path& file, const st
   return stored;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -9,7 +9,7 @@
 #include "prepare/control/reading/raw_control.h"
 #include "prepare/models/photo_names.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 struct PhotoSize {
   std::string name;                             // as in survey::Photo::name
@@ -32,7 +32,7 @@ class ControlPhotos {
 
  private:
   std::vector<PhotoSize> photos_;
-  PhotoNames finder_;
+  models::PhotoNames finder_;
 };
 
 // Where the marks are in the stored photos. `photos[i]` is that of marks[i]. Marks of which the file states the size of the photo are scaled to the
@@ -43,4 +43,4 @@ class ControlPhotos {
 std::vector<StoredMark> StoredPixels(const std::filesystem::path& file, const std::vector<RawMark>& marks,
                                      const std::vector<const PhotoSize*>& photos, std::vector<std::string>& warnings);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -8,7 +8,7 @@
 
 #include "core/geo/geodetic.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // Where a point shows in a photo.
 struct ControlMark {
@@ -41,4 +41,4 @@ struct ControlPoints {
   std::string crs_definition = {};    // what PROJ resolves to `crs`
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

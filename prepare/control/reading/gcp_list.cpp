@@ -7,7 +7,7 @@
 #include "core/base/errors.h"
 #include "prepare/control/reading/table_readers.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 constexpr size_t kNumbers = 5;
@@ -28,22 +28,22 @@ std::string PhotoOf(const std::vector<std::string>& words, const ControlPhotos& 
 
 }  // namespace
 
-bool LooksLikeGcpList(const TextTable& table, const ControlPhotos& photos) {
+bool LooksLikeGcpList(const tables::TextTable& table, const ControlPhotos& photos) {
   if (table.rows.empty()) return false;
   const std::vector<std::string>& words = table.rows.front().fields;
   if (words.size() <= kNumbers) return false;
   for (size_t i = 0; i < kNumbers; ++i) {
-    if (!ParseTableNumber(words[i], table.decimal_comma) && !(i == 2 && IsNoValue(words[i]))) return false;
+    if (!tables::ParseTableNumber(words[i], table.decimal_comma) && !(i == 2 && tables::IsNoValue(words[i]))) return false;
   }
   // Six numbers are a table with accuracies; with commas and semicolons, so may five numbers and a remark be.
   if (table.separator == ',' || table.separator == ';') {
     return std::any_of(table.rows.begin(), table.rows.end(),
-                       [&](const TableRow& row) { return row.fields.size() > kNumbers && photos.Find(row.fields[kNumbers]) != nullptr; });
+                       [&](const tables::TableRow& row) { return row.fields.size() > kNumbers && photos.Find(row.fields[kNumbers]) != nullptr; });
   }
-  return !ParseTableNumber(words[kNumbers], table.decimal_comma);
+  return !tables::ParseTableNumber(words[kNumbers], table.decimal_comma);
 }
 
-RawControl ReadGcpList(const TextTable& table, const ControlPhotos& photos) {
+RawControl ReadGcpList(const tables::TextTable& table, const ControlPhotos& photos) {
   RawControl control;
   control.file = table.file;
   control.format = "OpenDroneMap's gcp_list.txt";
@@ -52,18 +52,18 @@ RawControl ReadGcpList(const TextTable& table, const ControlPhotos& photos) {
   std::map<std::string, size_t> by_name;
   std::map<std::tuple<double, double, double>, size_t> by_place;
   size_t n_unnamed = 0;
-  for (const TableRow& row : table.rows) {
+  for (const tables::TableRow& row : table.rows) {
     const std::vector<std::string>& words = row.fields;
     if (words.size() <= kNumbers)
-      FailTableLine(table.file, row.line, "has " + std::to_string(words.size()) + " fields instead of 6 or more", kGcpListFix);
+      tables::FailTableLine(table.file, row.line, "has " + std::to_string(words.size()) + " fields instead of 6 or more", kGcpListFix);
     const auto number = [&](size_t i) {
-      const std::optional<double> value = ParseTableNumber(words[i], table.decimal_comma);
-      if (!value) FailTableLine(table.file, row.line, "'" + words[i].substr(0, 60) + "' is not a number", kGcpListFix);
+      const std::optional<double> value = tables::ParseTableNumber(words[i], table.decimal_comma);
+      if (!value) tables::FailTableLine(table.file, row.line, "'" + words[i].substr(0, 60) + "' is not a number", kGcpListFix);
       return *value;
     };
     RawPoint point;
     point.line = row.line;
-    const double z = IsNoValue(words[2]) ? std::numeric_limits<double>::quiet_NaN() : number(2);
+    const double z = tables::IsNoValue(words[2]) ? std::numeric_limits<double>::quiet_NaN() : number(2);
     point.given = {number(0), number(1), z};
     RawMark mark;
     mark.line = row.line;
@@ -90,8 +90,8 @@ RawControl ReadGcpList(const TextTable& table, const ControlPhotos& photos) {
       const std::tuple first_key(first.given.x(), first.given.y(),
                                  std::isnan(first.given.z()) ? std::numeric_limits<double>::infinity() : first.given.z());
       if (first_key != key) {
-        FailTableLine(table.file, row.line, "gives " + first.label + " other coordinates than line " + std::to_string(first.line),
-                      "Give every point a name of its own, or the same coordinates on all its lines");
+        tables::FailTableLine(table.file, row.line, "gives " + first.label + " other coordinates than line " + std::to_string(first.line),
+                              "Give every point a name of its own, or the same coordinates on all its lines");
       }
     }
     mark.label = control.points[found].label;
@@ -100,4 +100,4 @@ RawControl ReadGcpList(const TextTable& table, const ControlPhotos& photos) {
   return control;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -9,7 +9,7 @@
 #include "prepare/models/json_document.h"
 #include "prepare/tables/text_table.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 constexpr const char* kMarkersFix = "Export the markers of Metashape again (File > Export > Export Markers, Agisoft XML)";
@@ -26,9 +26,9 @@ class MarkerFile {
 
   RawControl Read() {
     const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
-    if (!result) FailTableLine(file_, LineAt(result.offset), std::string("is not XML (") + result.description() + ")", kMarkersFix);
+    if (!result) tables::FailTableLine(file_, LineAt(result.offset), std::string("is not XML (") + result.description() + ")", kMarkersFix);
     const pugi::xml_node chunk = document_.child("document").child("chunk");
-    if (!chunk) FailTableLine(file_, 1, "has no <document> with a <chunk>, as Metashape's XML has", kMarkersFix);
+    if (!chunk) tables::FailTableLine(file_, 1, "has no <document> with a <chunk>, as Metashape's XML has", kMarkersFix);
     RawControl control;
     control.file = file_;
     control.format = "Metashape's markers";
@@ -46,10 +46,10 @@ class MarkerFile {
 
  private:
   int LineAt(std::ptrdiff_t offset) const {
-    return static_cast<int>(LineOf(text_, std::min(static_cast<size_t>(std::max<std::ptrdiff_t>(offset, 0)), text_.size())));
+    return static_cast<int>(models::LineOf(text_, std::min(static_cast<size_t>(std::max<std::ptrdiff_t>(offset, 0)), text_.size())));
   }
   [[noreturn]] void Fail(const pugi::xml_node& node, const std::string& found, const std::string& fix = kMarkersFix) const {
-    FailTableLine(file_, LineAt(node.offset_debug()), std::string("<") + node.name() + "> " + found, fix);
+    tables::FailTableLine(file_, LineAt(node.offset_debug()), std::string("<") + node.name() + "> " + found, fix);
   }
   std::string Attribute(const pugi::xml_node& node, const char* name) const {
     const std::string value = node.attribute(name).value();
@@ -58,7 +58,7 @@ class MarkerFile {
   }
   double Number(const pugi::xml_node& node, const char* name) const {
     const std::string text = Attribute(node, name);
-    const std::optional<double> value = ParseTableNumber(text, false);
+    const std::optional<double> value = tables::ParseTableNumber(text, false);
     if (!value) Fail(node, std::string("has ") + name + " '" + text.substr(0, 60) + "', which is not a number");
     return *value;
   }
@@ -163,4 +163,4 @@ RawControl ReadMetashapeMarkers(const std::filesystem::path& file, const std::st
   return MarkerFile(file, text).Read();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -9,10 +9,10 @@
 
 #include "prepare/control/reading/raw_control.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // `text`: the content of the file. Points without coordinates in the file are left out, their marks are not. Throws base::InputError with the line
 // and how to fix it.
 RawControl ReadMetashapeMarkers(const std::filesystem::path& file, const std::string& text);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -4,7 +4,7 @@
 
 #include "prepare/models/json_document.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 constexpr const char* kObservationsFix = "Write the file with OpenSfM's annotation tool again, or give the points as gcp_list.txt";
@@ -12,15 +12,15 @@ constexpr const char* kObservationsFix = "Write the file with OpenSfM's annotati
 }  // namespace
 
 RawControl ReadOpensfmControl(const std::filesystem::path& file) {
-  const JsonDocument document(file, kObservationsFix);
+  const models::JsonDocument document(file, kObservationsFix);
   RawControl control;
   control.file = file;
   control.format = "OpenSfM's ground_control_points.json";
   control.crs = "EPSG:4979";
-  const JsonValue points = document.Root().At("points");
+  const models::JsonValue points = document.Root().At("points");
   std::map<std::string, int> line_of;
   for (size_t i = 0; i < points.Size(); ++i) {
-    const JsonValue entry = points.At(i);
+    const models::JsonValue entry = points.At(i);
     RawPoint point;
     point.label = entry.At("id").Text();
     point.line = entry.Line();
@@ -29,14 +29,14 @@ RawControl ReadOpensfmControl(const std::filesystem::path& file) {
       entry.Fail("has the id " + point.label + ", as the point on line " + std::to_string(first->second), "Give every point an id of its own");
     }
     // Points without a position tie photos together, but tell nothing about their place.
-    const std::optional<JsonValue> position = entry.Find("position");
+    const std::optional<models::JsonValue> position = entry.Find("position");
     if (!position) continue;
-    const std::optional<JsonValue> altitude = position->Find("altitude");
+    const std::optional<models::JsonValue> altitude = position->Find("altitude");
     point.given = {position->At("longitude").Number(), position->At("latitude").Number(),
                    altitude ? altitude->Number() : std::numeric_limits<double>::quiet_NaN()};
-    const JsonValue observations = entry.At("observations");
+    const models::JsonValue observations = entry.At("observations");
     for (size_t j = 0; j < observations.Size(); ++j) {
-      const JsonValue observation = observations.At(j);
+      const models::JsonValue observation = observations.At(j);
       RawMark mark;
       mark.label = point.label;
       mark.line = observation.Line();
@@ -52,4 +52,4 @@ RawControl ReadOpensfmControl(const std::filesystem::path& file) {
   return control;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -6,9 +6,9 @@
 
 #include "prepare/control/reading/raw_control.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // Throws base::InputError with the line and how to fix it.
 RawControl ReadOpensfmControl(const std::filesystem::path& file);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -8,7 +8,7 @@
 #include "core/geo/geoid.h"
 #include "prepare/tables/text_table.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 enum class Above { kAsSystem, kEllipsoid, kEgm96 };
@@ -36,7 +36,7 @@ geo::Crs MakeCrs(const RawControl& control, const std::string& option) {
   } catch (const std::invalid_argument& error) {
     const std::string found = "'" + definition.substr(0, 60) + "' is not a coordinate system (" + error.what() + ")";
     if (!option.empty()) throw base::UsageError("gcp_crs: " + found);
-    FailTableLine(control.file, control.crs_line, found, kCrsFix);
+    tables::FailTableLine(control.file, control.crs_line, found, kCrsFix);
   }
 }
 
@@ -124,7 +124,7 @@ PointPlaces PlacePoints(const RawControl& control, const std::string& option, co
       guessed = guessed || placer->plane().IsDatumGuessed({point.given.x(), point.given.y(), std::isnan(point.given.z()) ? 0.0 : point.given.z()});
     } catch (const std::invalid_argument& error) {
       const std::string what = error.what();
-      FailTableLine(control.file, point.line, point.label + ": " + what, what.find("grid") == std::string::npos ? kPlaceFix : kGridFix);
+      tables::FailTableLine(control.file, point.line, point.label + ": " + what, what.find("grid") == std::string::npos ? kPlaceFix : kGridFix);
     }
   }
   const std::string assumption = has_height ? Assumption(crs, above) : "";
@@ -136,4 +136,4 @@ PointPlaces PlacePoints(const RawControl& control, const std::string& option, co
   return result;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -9,7 +9,7 @@
 #include "core/geo/geodetic.h"
 #include "prepare/control/reading/raw_control.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 struct PointPlaces {
   std::string crs;                    // name of the system, horizontal and vertical
@@ -26,4 +26,4 @@ struct PointPlaces {
 // degrees. Appends to `warnings` what was assumed. Throws base::UsageError for other `heights`, base::InputError with the line and how to fix it.
 PointPlaces PlacePoints(const RawControl& control, const std::string& crs, const std::string& heights, std::vector<std::string>& warnings);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

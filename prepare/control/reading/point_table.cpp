@@ -6,7 +6,7 @@
 #include "prepare/control/reading/control_columns.h"
 #include "prepare/control/reading/table_readers.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 constexpr const char* kPointFix =
@@ -17,31 +17,31 @@ constexpr const char* kMarkFix = "Write per line: photo, label, x and y in pixel
 // Reads the rows of one table by the meaning of its columns.
 class RowReader {
  public:
-  RowReader(const TextTable& table, ControlColumns columns, const char* fix) : table_(&table), columns_(columns), fix_(fix) {}
+  RowReader(const tables::TextTable& table, ControlColumns columns, const char* fix) : table_(&table), columns_(columns), fix_(fix) {}
 
-  std::string Text(const TableRow& row, ControlColumn column, const char* what) const {
+  std::string Text(const tables::TableRow& row, ControlColumn column, const char* what) const {
     const std::string text = columns_.Field(row.fields, column);
-    if (text.empty() || text.size() > 4096) FailTableLine(table_->file, row.line, std::string("has no ") + what, fix_);
+    if (text.empty() || text.size() > 4096) tables::FailTableLine(table_->file, row.line, std::string("has no ") + what, fix_);
     return text;
   }
-  double Number(const TableRow& row, ControlColumn column, const char* what) const {
+  double Number(const tables::TableRow& row, ControlColumn column, const char* what) const {
     const std::string text = Text(row, column, what);
-    const std::optional<double> value = ParseTableNumber(text, table_->decimal_comma);
-    if (!value) FailTableLine(table_->file, row.line, std::string(what) + " '" + text.substr(0, 60) + "' is not a number", fix_);
+    const std::optional<double> value = tables::ParseTableNumber(text, table_->decimal_comma);
+    if (!value) tables::FailTableLine(table_->file, row.line, std::string(what) + " '" + text.substr(0, 60) + "' is not a number", fix_);
     return *value;
   }
   // Nothing for an empty field; an accuracy of zero means that it is not known.
-  std::optional<double> Sigma(const TableRow& row, ControlColumn column) const {
-    if (IsNoValue(columns_.Field(row.fields, column))) return std::nullopt;
+  std::optional<double> Sigma(const tables::TableRow& row, ControlColumn column) const {
+    if (tables::IsNoValue(columns_.Field(row.fields, column))) return std::nullopt;
     const double value = Number(row, column, "accuracy");
-    if (value < 0.0) FailTableLine(table_->file, row.line, "has a negative accuracy", "Write it in metres, or leave it empty");
+    if (value < 0.0) tables::FailTableLine(table_->file, row.line, "has a negative accuracy", "Write it in metres, or leave it empty");
     return value > 0.0 ? std::optional(value) : std::nullopt;
   }
-  RawPoint Point(const TableRow& row) const {
+  RawPoint Point(const tables::TableRow& row) const {
     RawPoint point;
     point.line = row.line;
     point.label = Text(row, ControlColumn::kLabel, "label");
-    const bool no_height = IsNoValue(columns_.Field(row.fields, ControlColumn::kZ));
+    const bool no_height = tables::IsNoValue(columns_.Field(row.fields, ControlColumn::kZ));
     point.given = {Number(row, ControlColumn::kX, "x"), Number(row, ControlColumn::kY, "y"),
                    no_height ? std::numeric_limits<double>::quiet_NaN() : Number(row, ControlColumn::kZ, "height")};
     point.horizontal_sigma_m = Sigma(row, ControlColumn::kSigma);
@@ -50,7 +50,7 @@ class RowReader {
     if (const std::optional<double> sigma = Sigma(row, ControlColumn::kVerticalSigma)) point.vertical_sigma_m = sigma;
     return point;
   }
-  RawMark Mark(const TableRow& row) const {
+  RawMark Mark(const tables::TableRow& row) const {
     RawMark mark;
     mark.line = row.line;
     mark.label = Text(row, ControlColumn::kLabel, "label");
@@ -63,21 +63,21 @@ class RowReader {
   }
 
  private:
-  int Pixels(const TableRow& row, ControlColumn column) const {
+  int Pixels(const tables::TableRow& row, ControlColumn column) const {
     const double value = Number(row, column, "size of the photo");
     if (!(value >= 1.0 && value <= 1e6) || value != std::floor(value)) {
-      FailTableLine(table_->file, row.line, "has a size of the photo that is not a number of pixels", fix_);
+      tables::FailTableLine(table_->file, row.line, "has a size of the photo that is not a number of pixels", fix_);
     }
     return static_cast<int>(value);
   }
 
-  const TextTable* table_;
+  const tables::TextTable* table_;
   ControlColumns columns_;
   const char* fix_;
 };
 
 // The names of the columns: a comment or a first row. `rows_from`: where the points begin.
-std::vector<std::string> Heading(const TextTable& table, TableKind kind, size_t& rows_from) {
+std::vector<std::string> Heading(const tables::TextTable& table, TableKind kind, size_t& rows_from) {
   rows_from = 0;
   if (!table.heading.empty() && ControlColumns(table.heading, kind).IsComplete(kind)) return table.heading;
   if (table.rows.empty() || !ControlColumns(table.rows.front().fields, kind).IsComplete(kind)) return {};
@@ -86,11 +86,11 @@ std::vector<std::string> Heading(const TextTable& table, TableKind kind, size_t&
 }
 
 // Of Pix4D and Metashape, by the number of fields.
-std::vector<std::string> UsualPointColumns(const TextTable& table) {
+std::vector<std::string> UsualPointColumns(const tables::TextTable& table) {
   const size_t n = table.rows.front().fields.size();
   if (n < 3 || n > 6) {
-    FailTableLine(table.file, table.rows.front().line,
-                  "has " + std::to_string(n) + (n == 1 ? " field" : " fields") + ", and no line says what they are", kPointFix);
+    tables::FailTableLine(table.file, table.rows.front().line,
+                          "has " + std::to_string(n) + (n == 1 ? " field" : " fields") + ", and no line says what they are", kPointFix);
   }
   std::vector<std::string> names = {"label", "x", "y", "z", n == 6 ? "horizontal accuracy" : "accuracy", "vertical accuracy"};
   names.resize(n);
@@ -117,7 +117,7 @@ bool SamePlace(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-RawControl ReadPointTable(const TextTable& table, const std::string& columns) {
+RawControl ReadPointTable(const tables::TextTable& table, const std::string& columns) {
   if (table.rows.empty()) throw base::InputError(table.file, "has no control points", kPointFix);
   RawControl control;
   control.file = table.file;
@@ -138,7 +138,7 @@ RawControl ReadPointTable(const TextTable& table, const std::string& columns) {
   const RowReader reader(table, meaning, kPointFix);
   std::map<std::string, size_t> seen;
   for (size_t i = begin; i < table.rows.size(); ++i) {
-    const TableRow& row = table.rows[i];
+    const tables::TableRow& row = table.rows[i];
     RawPoint point = reader.Point(row);
     if (meaning.HasMarks()) control.marks.push_back(reader.Mark(row));
     const auto [found, is_new] = seen.emplace(point.label, control.points.size());
@@ -148,14 +148,14 @@ RawControl ReadPointTable(const TextTable& table, const std::string& columns) {
     }
     const RawPoint& first = control.points[found->second];
     if (!SamePlace(first.given, point.given)) {
-      FailTableLine(table.file, row.line, "gives " + point.label + " other coordinates than line " + std::to_string(first.line),
-                    "Give every point a label of its own");
+      tables::FailTableLine(table.file, row.line, "gives " + point.label + " other coordinates than line " + std::to_string(first.line),
+                            "Give every point a label of its own");
     }
   }
   return control;
 }
 
-RawControl ReadMarkTable(const TextTable& table) {
+RawControl ReadMarkTable(const tables::TextTable& table) {
   RawControl control;
   control.file = table.file;
   control.format = "a table of marks";
@@ -168,4 +168,4 @@ RawControl ReadMarkTable(const TextTable& table) {
   return control;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

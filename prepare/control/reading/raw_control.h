@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 struct RawPoint {
   std::string label;
@@ -44,4 +44,4 @@ struct RawControl {
   std::vector<RawMark> marks;
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

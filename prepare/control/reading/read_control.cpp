@@ -19,7 +19,7 @@
 #include "prepare/control/reading/table_readers.h"
 #include "prepare/tables/text_table.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,13 +52,13 @@ RawControl ReadPoints(const ControlFiles& files, const ControlPhotos& photos) {
     default:
       break;
   }
-  const TextTable table = ParseTextTable(files.points, text);
+  const tables::TextTable table = tables::ParseTextTable(files.points, text);
   return files.columns.empty() && LooksLikeGcpList(table, photos) ? ReadGcpList(table, photos) : ReadPointTable(table, files.columns);
 }
 
 RawControl ReadMarks(const fs::path& file) {
   const std::string text = base::ReadFile(file);
-  return FirstCharacter(text) == '<' ? ReadMetashapeMarkers(file, text) : ReadMarkTable(ParseTextTable(file, text));
+  return FirstCharacter(text) == '<' ? ReadMetashapeMarkers(file, text) : ReadMarkTable(tables::ParseTextTable(file, text));
 }
 
 // With the line each is on; 0 in the option itself.
@@ -93,7 +93,7 @@ void SetCheckPoints(const std::string& check_points, std::vector<ControlPoint>& 
   std::set<std::string> known;
   for (const ControlPoint& point : points) known.insert(point.label);
   const std::string found = "names '" + label.substr(0, 60) + "', but no point is called so; there are " + Some(known);
-  if (is_file) FailTableLine(check_points, line, found, "Correct the label, or leave the line out");
+  if (is_file) tables::FailTableLine(check_points, line, found, "Correct the label, or leave the line out");
   throw base::UsageError("check_points " + found);
 }
 
@@ -150,7 +150,7 @@ void AddMarks(const RawControl& from, const ControlPhotos& photos, ControlPoints
     if (is_new) {
       control.points[usable.points[i]].marks.push_back({usable.photos[i]->name, stored[i].pixel, mark.line, stored[i].if_upright});
     } else if (stored[first->second].pixel != stored[i].pixel) {
-      FailTableLine(
+      tables::FailTableLine(
           from.file, mark.line,
           fmt::format("marks {} in {} a second time, elsewhere than line {}", mark.label, usable.photos[i]->name, usable.marks[first->second].line),
           "Keep one mark of a point per photo");
@@ -210,4 +210,4 @@ ControlPoints ReadControl(const ControlFiles& files, const std::vector<PhotoSize
   return control;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

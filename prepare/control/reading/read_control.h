@@ -10,7 +10,7 @@
 #include "prepare/control/reading/control_photos.h"
 #include "prepare/control/reading/control_points.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // What the user gives; only `points` is required.
 struct ControlFiles {
@@ -30,4 +30,4 @@ struct ControlFiles {
 //   base::UsageError  crs, columns, heights or check_points that cannot be meant
 ControlPoints ReadControl(const ControlFiles& files, const std::vector<PhotoSize>& photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

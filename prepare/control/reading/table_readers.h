@@ -14,18 +14,18 @@
 #include "prepare/control/reading/raw_control.h"
 #include "prepare/tables/text_table.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 // Whether the rows are those of gcp_list.txt: five numbers, then a photo; between commas or semicolons one of `photos`.
-bool LooksLikeGcpList(const TextTable& table, const ControlPhotos& photos);
+bool LooksLikeGcpList(const tables::TextTable& table, const ControlPhotos& photos);
 
 // All throw base::InputError with the line and how to fix it.
 // The photos help to read names with spaces.
-RawControl ReadGcpList(const TextTable& table, const ControlPhotos& photos);
+RawControl ReadGcpList(const tables::TextTable& table, const ControlPhotos& photos);
 // `columns`: names, separated by commas, see control_columns.h; empty: those of the heading, else label,x,y,z[,accuracy] or, with 6 fields,
 // label,x,y,z,horizontal accuracy,vertical accuracy. Throws base::UsageError for `columns` that are no names of columns.
-RawControl ReadPointTable(const TextTable& table, const std::string& columns);
+RawControl ReadPointTable(const tables::TextTable& table, const std::string& columns);
 // By its heading, else image,label,x,y.
-RawControl ReadMarkTable(const TextTable& table);
+RawControl ReadMarkTable(const tables::TextTable& table);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

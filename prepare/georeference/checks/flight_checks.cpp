@@ -14,7 +14,7 @@
 #include "prepare/georeference/checks/shutter_table.h"
 #include "prepare/georeference/dome_fit.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 constexpr double kDomeSigmas = 3.0;
@@ -142,7 +142,7 @@ survey::FlightChecks CheckFlight(const survey::Survey& survey, const std::vector
     checks.dome_sigma_m = dome.sigma_m;
   }
   const camera::Camera& camera = survey.cameras[static_cast<size_t>(camera_index)];
-  const int k1_index = RadialParameterIndex(camera.model);
+  const int k1_index = bundle::RadialParameterIndex(camera.model);
   if (k1_index >= 0) checks.k1 = camera.params[static_cast<size_t>(k1_index)];
   return checks;
 }
@@ -163,7 +163,7 @@ std::vector<survey::Problem> FlightProblems(const survey::FlightChecks& checks, 
 }
 
 double CornerShift(const camera::Camera& camera, double change) {
-  if (RadialParameterIndex(camera.model) < 0) return std::numeric_limits<double>::quiet_NaN();
+  if (bundle::RadialParameterIndex(camera.model) < 0) return std::numeric_limits<double>::quiet_NaN();
   const Eigen::Vector2d middle = camera.PrincipalPoint();
   const Eigen::Vector2d corner(middle.x() > 0.5 * camera.width ? 0.0 : camera.width, middle.y() > 0.5 * camera.height ? 0.0 : camera.height);
   const Eigen::Vector3d ray = camera.RayFromImg(corner);
@@ -181,4 +181,4 @@ std::string DescribeChecks(const survey::FlightChecks& checks) {
                      checks.camera_name.empty() ? "" : " (" + checks.camera_name + ")", Number(checks.smear_px, "{:.1f} px"), dome, k1);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

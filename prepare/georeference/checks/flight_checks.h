@@ -7,7 +7,7 @@
 #include "core/survey/exif.h"
 #include "core/survey/survey.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // Index into Survey::cameras of the camera with most photos, the first of several; -1 without photos.
 int MainCamera(const survey::Survey& survey);
@@ -30,4 +30,4 @@ std::string DescribeChecks(const survey::FlightChecks& checks);
 constexpr double kMaxSmear_px = 1.0;
 constexpr double kMaxCornerShift_px = 1.0;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

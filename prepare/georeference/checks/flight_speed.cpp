@@ -7,7 +7,7 @@
 
 #include "core/base/order_statistics.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 constexpr double kLongestLeg = 2.5;  // of the median leg
@@ -78,4 +78,4 @@ double SpeedFromPositions(const survey::Survey& survey) {
   return base::Median(speeds);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -3,7 +3,7 @@
 
 #include "core/survey/survey.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // Median over stretches of the flights of about kStretch_s, in metres per second: path over time, so that times rounded to seconds do not matter. A
 // pause of more than 2.5 times the usual interval between photos ends a stretch. NaN when fewer than two photos of a flight have different times.
@@ -12,4 +12,4 @@ double SpeedFromPositions(const survey::Survey& survey);
 
 constexpr double kStretch_s = 10.0;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

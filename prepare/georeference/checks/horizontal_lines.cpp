@@ -11,7 +11,7 @@
 #include "core/base/log.h"
 #include "core/image/image.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Vector2d;
@@ -105,4 +105,4 @@ FoundLines FindHorizontalLines(const survey::Survey& survey, base::ThreadPool& t
   return found;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

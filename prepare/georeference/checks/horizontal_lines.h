@@ -7,7 +7,7 @@
 #include "core/survey/survey.h"
 #include "prepare/georeference/checks/yaw_modes.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // Training photos in which lines are searched, at most, evenly over the survey, reduced to kLinePhotoWidth pixels.
 constexpr int kLinePhotos = 32;
@@ -25,4 +25,4 @@ struct FoundLines {
 FoundLines FindHorizontalLines(const survey::Survey& survey, base::ThreadPool& threads);
 constexpr double kShortestLinePx = 25.0;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

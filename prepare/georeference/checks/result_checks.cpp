@@ -13,7 +13,7 @@
 #include "prepare/poses/focal_check.h"
 #include "prepare/poses/seed/seed_rotation.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Urgency = Contradiction::Urgency;
@@ -34,7 +34,7 @@ struct FocalFinding {
   // Of the camera with the most photos among those that are far off, else of the one with the most tagged ones, else of any.
   double found_px = 0.0, tagged_px = 0.0, longer_side_px = 0.0;
   bool Tagged(size_t n_photos) const { return 2 * static_cast<size_t>(n_tagged) > n_photos; }
-  bool Far() const { return static_cast<double>(n_far) > kMaxFarFocal * static_cast<double>(n_tagged); }
+  bool Far() const { return static_cast<double>(n_far) > poses::kMaxFarFocal * static_cast<double>(n_tagged); }
 };
 
 FocalFinding CompareFocals(const std::vector<CheckedPhoto>& photos) {
@@ -57,7 +57,7 @@ FocalFinding CompareFocals(const std::vector<CheckedPhoto>& photos) {
   for (const auto& [camera, entry] : entries) {
     const auto n_tagged = static_cast<int>(entry.tagged_px.size());
     const double tagged_px = entry.tagged_px.empty() ? 0.0 : base::Median(entry.tagged_px);
-    const bool near = entry.found_px >= kShortestFocal * tagged_px && entry.found_px <= kLongestFocal * tagged_px;
+    const bool near = entry.found_px >= poses::kShortestFocal * tagged_px && entry.found_px <= poses::kLongestFocal * tagged_px;
     const bool far = n_tagged > 0 && !near;
     finding.n_tagged += n_tagged;
     finding.n_far += far ? n_tagged : 0;
@@ -73,17 +73,17 @@ FocalFinding CompareFocals(const std::vector<CheckedPhoto>& photos) {
 }
 
 double FilmFocal(double focal_px, double longer_side_px) {
-  return longer_side_px > 0.0 ? kFilmWidth_mm * focal_px / longer_side_px : 0.0;
+  return longer_side_px > 0.0 ? poses::kFilmWidth_mm * focal_px / longer_side_px : 0.0;
 }
 
-HeightAboveTakeOff HeightsOfPhotos(const CheckedResult& result) {
+poses::HeightAboveTakeOff HeightsOfPhotos(const CheckedResult& result) {
   if (!result.georeferenced) return {};
   std::vector<double> found, tagged;
   for (const CheckedPhoto& photo : result.photos) {
     found.push_back(photo.agl_m);
     tagged.push_back(photo.relative_altitude_m.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
-  return CompareHeights(found, tagged);
+  return poses::CompareHeights(found, tagged);
 }
 
 bool LooksDown(const CheckedResult& result) {
@@ -103,14 +103,14 @@ double MedianHeight(const CheckedResult& result) {
 }
 
 bool DiffersNotably(const FocalFinding& focal) {
-  return focal.tagged_px > 0.0 && std::abs(focal.found_px / focal.tagged_px - 1.0) > kUsualFocalError;
+  return focal.tagged_px > 0.0 && std::abs(focal.found_px / focal.tagged_px - 1.0) > poses::kUsualFocalError;
 }
 
-std::string HeightText(const HeightAboveTakeOff& height) {
+std::string HeightText(const poses::HeightAboveTakeOff& height) {
   return fmt::format("the cameras are {:.0f} m above the ground, and RelativeAltitude says {:.0f} m", height.found_m, height.tagged_m);
 }
 
-void AboutFocal(const CheckedResult& result, const FocalFinding& focal, const HeightAboveTakeOff& height, ResultChecks* checks) {
+void AboutFocal(const CheckedResult& result, const FocalFinding& focal, const poses::HeightAboveTakeOff& height, ResultChecks* checks) {
   if (!focal.Far()) return;
   const bool decides = result.georeferenced && !result.by_control;
   Contradiction found{.code = "focal_far",
@@ -141,7 +141,7 @@ void AboutFocal(const CheckedResult& result, const FocalFinding& focal, const He
   checks->contradictions.push_back(std::move(found));
 }
 
-void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const HeightAboveTakeOff& height, ResultChecks* checks) {
+void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const poses::HeightAboveTakeOff& height, ResultChecks* checks) {
   if (!height.Notable()) return;
   const bool tagged = focal.Tagged(result.photos.size());
   const bool decides = !result.by_control;
@@ -191,7 +191,7 @@ void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const H
 }
 
 // Nothing to compare with.
-void AboutWitnesses(const CheckedResult& result, const FocalFinding& focal, const HeightAboveTakeOff& height, ResultChecks* checks) {
+void AboutWitnesses(const CheckedResult& result, const FocalFinding& focal, const poses::HeightAboveTakeOff& height, ResultChecks* checks) {
   if (height.Known() || !result.georeferenced || result.by_control || !result.own_poses || !LooksDown(result)) return;
   Contradiction found{.code = "height_unchecked",
                       .n_photos = static_cast<int>(result.photos.size()),
@@ -245,7 +245,7 @@ void AboutGimbal(const CheckedResult& result, ResultChecks* checks) {
     if (!photo.gimbal_pitch_deg) continue;
     ++n_with;
     const GimbalFault fault =
-        FaultOfAngles(UpInCamera(*photo.gimbal_pitch_deg, photo.gimbal_roll_deg.value_or(0.0)), photo.cam_from_enu * Eigen::Vector3d::UnitZ());
+        FaultOfAngles(input::UpInCamera(*photo.gimbal_pitch_deg, photo.gimbal_roll_deg.value_or(0.0)), photo.cam_from_enu * Eigen::Vector3d::UnitZ());
     if (fault == GimbalFault::kNone) continue;
     ++n_off;
     ++n_of[fault];
@@ -283,7 +283,7 @@ void AboutYaw(const CheckedResult& result, ResultChecks* checks) {
   int n = 0;
   for (const CheckedPhoto& photo : result.photos) {
     if (!photo.gimbal_pitch_deg || !photo.gimbal_yaw_deg) continue;
-    const Eigen::Quaterniond tagged = RotationFromAngles(*photo.gimbal_yaw_deg, *photo.gimbal_pitch_deg, photo.gimbal_roll_deg.value_or(0.0));
+    const Eigen::Quaterniond tagged = poses::RotationFromAngles(*photo.gimbal_yaw_deg, *photo.gimbal_pitch_deg, photo.gimbal_roll_deg.value_or(0.0));
     const Eigen::Matrix3d turn = (photo.cam_from_enu.conjugate() * tagged).toRotationMatrix();
     const std::complex<double> about_up(turn(0, 0) + turn(1, 1), turn(1, 0) - turn(0, 1));
     if (!(std::abs(about_up) > 1.0)) continue;  // up differs
@@ -349,4 +349,4 @@ void ApplyChecks(const ResultChecks& checks, survey::Survey& survey) {
                    [](const survey::Problem& a, const survey::Problem& b) { return a.about_place && !b.about_place; });
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

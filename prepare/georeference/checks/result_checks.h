@@ -13,7 +13,7 @@
 #include "prepare/georeference/gimbal_check.h"
 #include "prepare/poses/seed/take_off_height.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // One photo of the finished survey.
 struct CheckedPhoto {
@@ -51,7 +51,7 @@ struct Contradiction {
 
 struct ResultChecks {
   std::vector<Contradiction> contradictions;
-  HeightAboveTakeOff height;
+  poses::HeightAboveTakeOff height;
   // What the contradictions leave open: of every length, relative, and of heights of the ground. 0: nothing.
   double scale_doubt = 0.0;
   double height_doubt_m = 0.0;
@@ -63,4 +63,4 @@ ResultChecks CheckResult(const CheckedResult& result);
 // Widens the stated accuracy to the doubts, puts the problems where they belong, and logs the notes. Nothing changes without contradictions.
 void ApplyChecks(const ResultChecks& checks, survey::Survey& survey);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -7,7 +7,7 @@
 
 #include "core/base/text.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
@@ -95,4 +95,4 @@ std::string CameraName(const std::string& make, const std::string& model) {
   return type.empty() ? brand : brand + " " + type;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

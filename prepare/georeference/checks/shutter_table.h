@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct ShutterQuery {
   std::string camera_name;           // make and model as tagged, e.g. "DJI FC300S"
@@ -21,4 +21,4 @@ double SensorReadout(const ShutterQuery& query);
 // "DJI FC300S"; without the make when the model already begins with it ("Canon PowerShot ELPH 300 HS").
 std::string CameraName(const std::string& make, const std::string& model);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using survey::YawDifference;
@@ -143,4 +143,4 @@ survey::DominantDirections FindDirections(const std::vector<HorizontalLine>& lin
   return directions;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -6,7 +6,7 @@
 
 #include "core/survey/directions.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // A horizontal straight line, such as a roof edge or a kerb.
 struct HorizontalLine {
@@ -19,4 +19,4 @@ struct HorizontalLine {
 // single line decides). Kept are those that clearly stand out from lines in any direction. `photos` is only recorded.
 survey::DominantDirections FindDirections(const std::vector<HorizontalLine>& lines, int photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -20,7 +20,7 @@
 #include "prepare/models/photo_names.h"
 #include "prepare/tables/text_table.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,10 +30,10 @@ constexpr const char* kGeoFix =
 constexpr const char* kCrsFix = "Begin the file with EPSG:4326 for longitude and latitude, or with the coordinate system of x and y";
 constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<std::string> NamesOf(const std::vector<PhotoFile>& photos) {
+std::vector<std::string> NamesOf(const std::vector<input::PhotoFile>& photos) {
   std::vector<std::string> names;
   names.reserve(photos.size());
-  for (const PhotoFile& photo : photos) names.push_back(photo.name);
+  for (const input::PhotoFile& photo : photos) names.push_back(photo.name);
   return names;
 }
 
@@ -53,11 +53,11 @@ struct RawRow {
 
 class GeoReader {
  public:
-  GeoReader(const fs::path& file, const std::vector<PhotoFile>& photos) : file_(file), photos_(photos), names_(NamesOf(photos)) {}
+  GeoReader(const fs::path& file, const std::vector<input::PhotoFile>& photos) : file_(file), photos_(photos), names_(NamesOf(photos)) {}
 
   GeoTable Read() {
     const std::string text = base::ReadFile(file_);
-    table_ = ParseTextTable(file_, text);
+    table_ = tables::ParseTextTable(file_, text);
     const std::optional<geo::Crs> crs = ReadCrs(text);
     for (size_t i = rows_from_; i < table_.rows.size(); ++i) ReadRow(table_.rows[i]);
     if (rows_.empty()) throw base::InputError(file_, "has no positions", kGeoFix);
@@ -69,7 +69,7 @@ class GeoReader {
   }
 
  private:
-  std::optional<double> Number(const std::string& text) const { return ParseTableNumber(text, table_.decimal_comma); }
+  std::optional<double> Number(const std::string& text) const { return tables::ParseTableNumber(text, table_.decimal_comma); }
 
   bool HasNumber(const std::vector<std::string>& fields) const {
     return std::any_of(fields.begin(), fields.end(), [&](const std::string& field) { return Number(field).has_value(); });
@@ -80,7 +80,7 @@ class GeoReader {
     heading_.clear();
     rows_from_ = 0;
     const auto complete = [](const std::vector<std::string>& names) {
-      return ControlColumns(names, TableKind::kPositions).IsComplete(TableKind::kPositions);
+      return control::ControlColumns(names, control::TableKind::kPositions).IsComplete(control::TableKind::kPositions);
     };
     if (!table_.heading.empty() && complete(table_.heading)) heading_ = table_.heading;
     if (table_.rows.empty()) return;
@@ -110,12 +110,12 @@ class GeoReader {
     try {
       geo::Crs crs(definition == "WGS84" ? "EPSG:4326" : definition);
       if (table_.crs.empty()) {
-        table_ = ParseTextTable(file_, WithoutLine(text, line));
+        table_ = tables::ParseTextTable(file_, WithoutLine(text, line));
         FindHeading();
       }
       return crs;
     } catch (const std::invalid_argument& error) {
-      FailTableLine(file_, line, "'" + definition.substr(0, 60) + "' is not a coordinate system (" + error.what() + ")", kCrsFix);
+      tables::FailTableLine(file_, line, "'" + definition.substr(0, 60) + "' is not a coordinate system (" + error.what() + ")", kCrsFix);
     }
   }
 
@@ -123,7 +123,7 @@ class GeoReader {
   bool HasDegrees() const {
     const auto names = [&](const char* part) {
       return std::any_of(heading_.begin(), heading_.end(), [&](const std::string& name) {
-        return ColumnOfName(name, TableKind::kPositions).has_value() && base::LowerCase(name).find(part) != std::string::npos;
+        return control::ColumnOfName(name, control::TableKind::kPositions).has_value() && base::LowerCase(name).find(part) != std::string::npos;
       });
     };
     return names("lon") && names("lat");
@@ -132,7 +132,7 @@ class GeoReader {
   // How many words at the beginning are the photo's name: of those that stand before two numbers the fewest that are a photo's, else that end with
   // the extension of one, else the fewest.
   size_t WordsOfName(const std::vector<std::string>& words) const {
-    const auto is_value = [&](size_t i) { return Number(words[i]).has_value() || (!words[i].empty() && IsNoValue(words[i])); };
+    const auto is_value = [&](size_t i) { return Number(words[i]).has_value() || (!words[i].empty() && tables::IsNoValue(words[i])); };
     std::optional<size_t> shortest, with_extension;
     std::string name;
     for (size_t n = 1; n + 2 <= words.size(); ++n) {
@@ -140,13 +140,13 @@ class GeoReader {
       if (!is_value(n) || !is_value(n + 1)) continue;
       if (names_.Find(name)) return n;
       if (!shortest) shortest = n;
-      if (!with_extension && LooksLikePhoto(words[n - 1])) with_extension = n;
+      if (!with_extension && input::LooksLikePhoto(words[n - 1])) with_extension = n;
     }
     return with_extension ? *with_extension : shortest.value_or(1);
   }
 
   // The fields with the photo's name as one of them.
-  std::vector<std::string> FieldsOf(const TableRow& row) const {
+  std::vector<std::string> FieldsOf(const tables::TableRow& row) const {
     std::vector<std::string> fields = row.fields;
     const bool name_first = heading_.empty() || PhotoColumnIsFirst();
     if (table_.separator != ' ' || !name_first || fields.size() < 3) return fields;
@@ -158,28 +158,28 @@ class GeoReader {
   }
 
   bool PhotoColumnIsFirst() const {
-    const std::optional<ControlColumn> column = ColumnOfName(heading_.front(), TableKind::kPositions);
-    return column == ControlColumn::kPhoto || column == ControlColumn::kLabel;
+    const std::optional<control::ControlColumn> column = control::ColumnOfName(heading_.front(), control::TableKind::kPositions);
+    return column == control::ControlColumn::kPhoto || column == control::ControlColumn::kLabel;
   }
 
   // By the heading, else by place. Empty: there is none.
-  std::string Field(const std::vector<std::string>& fields, ControlColumn column) const {
-    if (!heading_.empty()) return ControlColumns(heading_, TableKind::kPositions).Field(fields, column);
+  std::string Field(const std::vector<std::string>& fields, control::ControlColumn column) const {
+    if (!heading_.empty()) return control::ControlColumns(heading_, control::TableKind::kPositions).Field(fields, column);
     const auto at = [&](size_t i) { return i < fields.size() ? fields[i] : std::string(); };
     // Pix4D's rows without angles; OpenDroneMap has no rows of six.
     const bool six = fields.size() == 6 && IsAccuracy(fields[4]) && IsAccuracy(fields[5]);
     switch (column) {
-      case ControlColumn::kPhoto:
+      case control::ControlColumn::kPhoto:
         return at(0);
-      case ControlColumn::kX:
+      case control::ControlColumn::kX:
         return at(1);
-      case ControlColumn::kY:
+      case control::ControlColumn::kY:
         return at(2);
-      case ControlColumn::kZ:
+      case control::ControlColumn::kZ:
         return at(3);
-      case ControlColumn::kHorizontalSigma:
+      case control::ControlColumn::kHorizontalSigma:
         return at(six ? 4 : 7);
-      case ControlColumn::kVerticalSigma:
+      case control::ControlColumn::kVerticalSigma:
         return at(six ? 5 : 8);
       default:
         return "";
@@ -193,29 +193,30 @@ class GeoReader {
   }
 
   // Zero, less, and what is no number mean that it is not known.
-  std::optional<double> Accuracy(const std::vector<std::string>& fields, ControlColumn column) const {
+  std::optional<double> Accuracy(const std::vector<std::string>& fields, control::ControlColumn column) const {
     const std::optional<double> value = Number(Field(fields, column));
     return value && *value > 0.0 ? value : std::nullopt;
   }
 
-  void ReadRow(const TableRow& row) {
+  void ReadRow(const tables::TableRow& row) {
     const std::vector<std::string> fields = FieldsOf(row);
-    std::string photo = Field(fields, ControlColumn::kPhoto);
-    if (photo.empty()) photo = Field(fields, ControlColumn::kLabel);
-    const std::string x = Field(fields, ControlColumn::kX), y = Field(fields, ControlColumn::kY), z = Field(fields, ControlColumn::kZ);
-    if (photo.empty() || photo.size() > 4096) FailTableLine(file_, row.line, "has no name of a photo", kGeoFix);
-    if (fields.size() < 3) FailTableLine(file_, row.line, "has no x and y", kGeoFix);
+    std::string photo = Field(fields, control::ControlColumn::kPhoto);
+    if (photo.empty()) photo = Field(fields, control::ControlColumn::kLabel);
+    const std::string x = Field(fields, control::ControlColumn::kX), y = Field(fields, control::ControlColumn::kY),
+                      z = Field(fields, control::ControlColumn::kZ);
+    if (photo.empty() || photo.size() > 4096) tables::FailTableLine(file_, row.line, "has no name of a photo", kGeoFix);
+    if (fields.size() < 3) tables::FailTableLine(file_, row.line, "has no x and y", kGeoFix);
     const auto number = [&](const std::string& text) {
       const std::optional<double> value = Number(text);
-      if (!value) FailTableLine(file_, row.line, "'" + text.substr(0, 60) + "' is not a number", kGeoFix);
+      if (!value) tables::FailTableLine(file_, row.line, "'" + text.substr(0, 60) + "' is not a number", kGeoFix);
       return *value;
     };
-    if (IsNoValue(x) || IsNoValue(y)) {
+    if (tables::IsNoValue(x) || tables::IsNoValue(y)) {
       ++n_without_position_;
       return;
     }
     RawRow raw;
-    raw.given = {number(x), number(y), IsNoValue(z) ? kNotGiven : number(z)};
+    raw.given = {number(x), number(y), tables::IsNoValue(z) ? kNotGiven : number(z)};
     if (raw.given.x() == 0.0 && raw.given.y() == 0.0) {
       ++n_without_position_;
       return;
@@ -223,9 +224,9 @@ class GeoReader {
     raw.row.photo = photo;
     raw.row.index = names_.Find(photo);
     raw.row.line = row.line;
-    raw.row.horizontal_accuracy_m = Accuracy(fields, ControlColumn::kHorizontalSigma);
-    raw.row.vertical_accuracy_m = Accuracy(fields, ControlColumn::kVerticalSigma);
-    if (const std::optional<double> both = Accuracy(fields, ControlColumn::kSigma)) {
+    raw.row.horizontal_accuracy_m = Accuracy(fields, control::ControlColumn::kHorizontalSigma);
+    raw.row.vertical_accuracy_m = Accuracy(fields, control::ControlColumn::kVerticalSigma);
+    if (const std::optional<double> both = Accuracy(fields, control::ControlColumn::kSigma)) {
       if (!raw.row.horizontal_accuracy_m) raw.row.horizontal_accuracy_m = both;
       if (!raw.row.vertical_accuracy_m) raw.row.vertical_accuracy_m = both;
     }
@@ -281,7 +282,7 @@ class GeoReader {
     const double distance_m = base::Median(from_tags_m), other_m = base::Median(others_from_tags_m);
     constexpr double kFar_m = 1000.0, kTimes = 10.0;
     const bool nearer = distance_m > kFar_m && other_m < kFar_m && distance_m > kTimes * other_m;
-    const bool axes_said = !heading_.empty() && ControlColumns(heading_, TableKind::kPositions).axes_said();
+    const bool axes_said = !heading_.empty() && control::ControlColumns(heading_, control::TableKind::kPositions).axes_said();
     if (others_possible && (impossible || (nearer && !axes_said))) {
       result_.exchanged = true;
       result_.warnings.push_back(fmt::format(
@@ -300,10 +301,10 @@ class GeoReader {
     }
     for (size_t i = 0; i < rows_.size(); ++i) {
       if (!places[i]) {
-        FailTableLine(file_, rows_[i].row.line, reasons[i],
-                      crs.heights() == geo::CrsHeights::kGravity
-                          ? "Check the coordinates and the first line; heights above a geoid need its grid (projsync, or Debian's proj-data)"
-                          : "Check that x is east or longitude and y north or latitude, and that the first line is their coordinate system");
+        tables::FailTableLine(file_, rows_[i].row.line, reasons[i],
+                              crs.heights() == geo::CrsHeights::kGravity
+                                  ? "Check the coordinates and the first line; heights above a geoid need its grid (projsync, or Debian's proj-data)"
+                                  : "Check that x is east or longitude and y north or latitude, and that the first line is their coordinate system");
       }
       rows_[i].row.position = *places[i];
     }
@@ -352,14 +353,14 @@ class GeoReader {
   }
 
   [[noreturn]] void FailTwice(const GeoRow& row, int line) const {
-    FailTableLine(file_, row.line, "names " + row.photo.substr(0, 60) + " a second time, after line " + std::to_string(line),
-                  "Keep one line per photo");
+    tables::FailTableLine(file_, row.line, "names " + row.photo.substr(0, 60) + " a second time, after line " + std::to_string(line),
+                          "Keep one line per photo");
   }
 
   fs::path file_;
-  const std::vector<PhotoFile>& photos_;
-  PhotoNames names_;
-  TextTable table_;
+  const std::vector<input::PhotoFile>& photos_;
+  models::PhotoNames names_;
+  tables::TextTable table_;
   std::vector<std::string> heading_;
   size_t rows_from_ = 0, n_without_position_ = 0;
   std::vector<RawRow> rows_;
@@ -369,8 +370,8 @@ class GeoReader {
 
 }  // namespace
 
-GeoTable ReadGeoTable(const fs::path& file, const std::vector<PhotoFile>& photos) {
+GeoTable ReadGeoTable(const fs::path& file, const std::vector<input::PhotoFile>& photos) {
   return GeoReader(file, photos).Read();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -19,7 +19,7 @@
 #include "core/geo/geodetic.h"
 #include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct GeoRow {
   std::string photo;            // as the file names it
@@ -39,6 +39,6 @@ struct GeoTable {
 // are written but all are the other way round; or, unless a heading names the axes, as written they are far from the photos' own tags (more than a
 // kilometre, and ten times as far as the other way round) and the other way round within a kilometre, by the medians. Throws base::InputError with
 // the line and how to fix it.
-GeoTable ReadGeoTable(const std::filesystem::path& file, const std::vector<PhotoFile>& photos);
+GeoTable ReadGeoTable(const std::filesystem::path& file, const std::vector<input::PhotoFile>& photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

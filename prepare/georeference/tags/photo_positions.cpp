@@ -15,7 +15,7 @@
 #include "prepare/georeference/tags/geo_table.h"
 #include "prepare/tables/text_table.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 namespace fs = std::filesystem;
@@ -54,7 +54,7 @@ fs::path GeoFileOf(const fs::path& photo_root, const std::string& geo_file) {
   return photo_root.filename() == "images" && fs::exists(beside) ? beside : fs::path();
 }
 
-void UseGeoFile(const fs::path& file, std::vector<PhotoFile>& photos) {
+void UseGeoFile(const fs::path& file, std::vector<input::PhotoFile>& photos) {
   const GeoTable table = ReadGeoTable(file, photos);
   for (const std::string& warning : table.warnings) base::LogWarning("{}", warning);
   size_t n_used = 0;
@@ -107,14 +107,14 @@ bool IsFarFromTag(const MrkRow& row, const survey::PhotoTags& tags) {
   return (geo::EcefFromGeodetic(tag) - geo::EcefFromGeodetic(row.position)).norm() > kFarOff_m;
 }
 
-void UseMrkFiles(const fs::path& photo_root, std::vector<PhotoFile>& photos) {
-  std::map<fs::path, std::vector<PhotoFile*>> by_folder;
-  for (PhotoFile& photo : photos) by_folder[(photo_root / photo.name).parent_path()].push_back(&photo);
+void UseMrkFiles(const fs::path& photo_root, std::vector<input::PhotoFile>& photos) {
+  std::map<fs::path, std::vector<input::PhotoFile*>> by_folder;
+  for (input::PhotoFile& photo : photos) by_folder[(photo_root / photo.name).parent_path()].push_back(&photo);
   for (const auto& [folder, in_folder] : by_folder) {
     const std::map<int, Numbered> rows = RowsOfFolder(folder);
-    std::vector<std::pair<PhotoFile*, const Numbered*>> pairs;
+    std::vector<std::pair<input::PhotoFile*, const Numbered*>> pairs;
     size_t n_far = 0;
-    for (PhotoFile* photo : in_folder) {
+    for (input::PhotoFile* photo : in_folder) {
       const std::optional<int> number = NumberOf(photo->name);
       const auto row = number ? rows.find(*number) : rows.end();
       if (row == rows.end()) continue;
@@ -154,17 +154,17 @@ std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
     if (words.empty()) continue;
     const auto before = [&](const char* label) {
       const auto found = std::find(words.begin() + 1, words.end(), label);
-      const std::optional<double> value = found == words.end() ? std::nullopt : ParseTableNumber(*(found - 1), false);
-      if (!value) FailTableLine(file, number, std::string("has no number before ") + label, kMrkFix);
+      const std::optional<double> value = found == words.end() ? std::nullopt : tables::ParseTableNumber(*(found - 1), false);
+      if (!value) tables::FailTableLine(file, number, std::string("has no number before ") + label, kMrkFix);
       return *value;
     };
     MrkRow row;
-    const std::optional<double> index = ParseTableNumber(words.front(), false);
+    const std::optional<double> index = tables::ParseTableNumber(words.front(), false);
     if (!index || *index < 0.0 || *index > 1e6 || *index != std::floor(*index))
-      FailTableLine(file, number, "does not begin with the photo's number", kMrkFix);
+      tables::FailTableLine(file, number, "does not begin with the photo's number", kMrkFix);
     row.number = static_cast<int>(*index);
     row.position = {before("Lat"), before("Lon"), before("Ellh")};
-    if (!geo::IsValid(row.position)) FailTableLine(file, number, "has a position that is not on Earth", kMrkFix);
+    if (!geo::IsValid(row.position)) tables::FailTableLine(file, number, "has a position that is not on Earth", kMrkFix);
     row.position.longitude_deg = geo::WrapLongitudeDeg(row.position.longitude_deg);
     const double status = before("Q");
     row.status = status > 0.0 && status < 1000.0 ? static_cast<int>(status) : 0;
@@ -172,7 +172,7 @@ std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
     const auto height = std::find(words.begin(), words.end(), "Ellh");
     std::vector<double> sigmas;
     for (auto word = height + 1; word != words.end() && sigmas.size() < 3; ++word) {
-      const std::optional<double> sigma = ParseTableNumber(*word, false);
+      const std::optional<double> sigma = tables::ParseTableNumber(*word, false);
       if (!sigma) break;
       sigmas.push_back(*sigma);
     }
@@ -198,10 +198,10 @@ std::vector<fs::path> PositionFiles(const fs::path& photo_root, const std::strin
   return logs;
 }
 
-void UsePositionFiles(const fs::path& photo_root, const std::string& geo_file, std::vector<PhotoFile>& photos) {
+void UsePositionFiles(const fs::path& photo_root, const std::string& geo_file, std::vector<input::PhotoFile>& photos) {
   const fs::path table = GeoFileOf(photo_root, geo_file);
   if (!table.empty()) return UseGeoFile(table, photos);
   UseMrkFiles(photo_root, photos);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -12,7 +12,7 @@
 #include "core/geo/geodetic.h"
 #include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct MrkRow {
   int number = 0;  // of the photo in its folder: DJI_0012.JPG, DJI_20230101120000_0012_V.JPG
@@ -31,6 +31,6 @@ std::vector<std::filesystem::path> PositionFiles(const std::filesystem::path& ph
 // photo folder, or beside it when that is called images. Without either, every .MRK serves the photos of its folder, unless it contradicts their tags
 // or other .MRK files there number the same photos. Throws base::InputError for a file that the user gave or called geo.txt; a bad .MRK is left out
 // with a warning.
-void UsePositionFiles(const std::filesystem::path& photo_root, const std::string& geo_file, std::vector<PhotoFile>& photos);
+void UsePositionFiles(const std::filesystem::path& photo_root, const std::string& geo_file, std::vector<input::PhotoFile>& photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

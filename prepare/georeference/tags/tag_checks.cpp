@@ -10,7 +10,7 @@
 
 #include "core/geo/enu_frame.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 // Even a drone that holds its height, and a receiver that rounds to centimetres, vary more than this.
@@ -19,10 +19,10 @@ constexpr double kSamePlace_m = 1.0;
 constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
 
 // The file, or the one of most of them, that most positions come from; empty: the photos' own tags.
-std::string PositionFile(const std::vector<Station>& stations) {
+std::string PositionFile(const std::vector<input::Station>& stations) {
   std::map<std::string, size_t> count;
   size_t n_gps = 0;
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     if (!station.gps) continue;
     ++n_gps;
     if (!station.position_file.empty()) ++count[station.position_file];
@@ -45,10 +45,10 @@ bool HeightsVary(const std::vector<double>& heights_m) {
   return *high - *low > kSameHeight_m;
 }
 
-HeightTags JudgeHeights(const std::vector<Station>& stations) {
+HeightTags JudgeHeights(const std::vector<input::Station>& stations) {
   std::vector<double> tagged, relative;
   size_t n_gps = 0;
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     if (!station.gps) continue;
     ++n_gps;
     if (std::isfinite(station.gps->height_m)) tagged.push_back(station.gps->height_m);
@@ -59,9 +59,9 @@ HeightTags JudgeHeights(const std::vector<Station>& stations) {
   return 2 * relative.size() > n_gps && !all_zero ? HeightTags::kRelative : HeightTags::kUnknown;
 }
 
-bool TagsAboveOneAnother(const std::vector<Station>& stations) {
+bool TagsAboveOneAnother(const std::vector<input::Station>& stations) {
   std::optional<geo::EnuFrame> frame;
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     if (!station.gps) continue;
     const geo::Geodetic place{station.gps->latitude_deg, station.gps->longitude_deg, 0.0};
     if (!frame) {
@@ -73,12 +73,12 @@ bool TagsAboveOneAnother(const std::vector<Station>& stations) {
   return true;
 }
 
-bool AllTagsEqual(const std::vector<Station>& stations) {
+bool AllTagsEqual(const std::vector<input::Station>& stations) {
   if (!TagsAboveOneAnother(stations)) return false;
   const HeightTags heights = JudgeHeights(stations);
   if (heights == HeightTags::kUnknown) return true;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     if (!station.gps) continue;
     const double height_m = heights == HeightTags::kTagged ? station.gps->height_m : station.relative_altitude_m.value_or(kNoHeight);
     if (!std::isfinite(height_m)) continue;
@@ -88,7 +88,7 @@ bool AllTagsEqual(const std::vector<Station>& stations) {
   return !(high - low > kSamePlace_m);
 }
 
-std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>& stations) {
+std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<input::Station>& stations) {
   struct Kind {
     const char* code;
     const char* finding;
@@ -130,7 +130,7 @@ std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>
           std::string(kind.repair_file) + ", or remove the file to use the photos' own tags, then run the same command with --restart";
     }
     bool possible = true;
-    for (Station& station : fault.repaired) {
+    for (input::Station& station : fault.repaired) {
       if (!station.gps) continue;
       const geo::Geodetic place = kind.repair(*station.gps);
       possible = possible && std::abs(place.latitude_deg) <= 90.0;
@@ -141,4 +141,4 @@ std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<Station>
   return faults;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -7,7 +7,7 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 using Eigen::Vector3d;
 
@@ -22,10 +22,10 @@ geo::Geodetic Place(const geo::Geodetic& gps) {
 
 // Medians are taken in an ENU frame, which has no special case at the poles and the date line. The frame starts at one of the tags and is moved to
 // the median, where it is level.
-geo::Geodetic MedianPosition(const std::vector<Station>& stations) {
+geo::Geodetic MedianPosition(const std::vector<input::Station>& stations) {
   std::vector<double> heights;
   std::optional<geo::Geodetic> centre;
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     if (!station.gps) continue;
     if (std::isfinite(station.gps->height_m)) heights.push_back(station.gps->height_m);
     if (!centre) centre = Place(*station.gps);
@@ -35,7 +35,7 @@ geo::Geodetic MedianPosition(const std::vector<Station>& stations) {
   for (int round = 0; round < 3; ++round) {
     const geo::EnuFrame frame(*centre);
     std::vector<double> axis[3];
-    for (const Station& station : stations) {
+    for (const input::Station& station : stations) {
       if (!station.gps) continue;
       const Vector3d x = frame.EnuFromGeodetic({station.gps->latitude_deg, station.gps->longitude_deg, height_m});
       for (int i = 0; i < 3; ++i) axis[i].push_back(x[i]);
@@ -45,12 +45,12 @@ geo::Geodetic MedianPosition(const std::vector<Station>& stations) {
   return {centre->latitude_deg, centre->longitude_deg, height_m};
 }
 
-std::vector<Tag> CollectTags(const std::vector<Station>& stations, const std::vector<size_t>& order, const geo::Geodetic& origin,
+std::vector<Tag> CollectTags(const std::vector<input::Station>& stations, const std::vector<size_t>& order, const geo::Geodetic& origin,
                              HeightTags heights) {
   const geo::EnuFrame frame(origin);
   std::vector<Tag> tags;
   for (const size_t i : order) {
-    const Station& station = stations[i];
+    const input::Station& station = stations[i];
     if (!station.gps) continue;
     geo::Geodetic place = *station.gps;
     if (heights == HeightTags::kRelative) place.height_m = station.relative_altitude_m.value_or(std::numeric_limits<double>::quiet_NaN());
@@ -73,4 +73,4 @@ double MedianSigma(const std::vector<Tag>& tags, double Tag::*sigma) {
   return base::Median(values);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

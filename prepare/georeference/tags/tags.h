@@ -8,7 +8,7 @@
 #include "prepare/georeference/tags/tag_checks.h"
 #include "prepare/input/station.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 // A tagged position in ENU metres.
 struct Tag {
@@ -19,10 +19,11 @@ struct Tag {
 };
 
 // Median of the tagged positions; its height is 0 where no tag has one. At least one station must have a tag.
-geo::Geodetic MedianPosition(const std::vector<Station>& stations);
+geo::Geodetic MedianPosition(const std::vector<input::Station>& stations);
 // The tags in ENU about `origin`, in the order of `order`, which are numbers of stations. Heights that say nothing are NaN.
-std::vector<Tag> CollectTags(const std::vector<Station>& stations, const std::vector<size_t>& order, const geo::Geodetic& origin, HeightTags heights);
+std::vector<Tag> CollectTags(const std::vector<input::Station>& stations, const std::vector<size_t>& order, const geo::Geodetic& origin,
+                             HeightTags heights);
 // Median of one of the two accuracies; at least one tag.
 double MedianSigma(const std::vector<Tag>& tags, double Tag::*sigma);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

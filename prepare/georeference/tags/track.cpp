@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <numeric>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
-Track::Track(const std::vector<Station>& stations, const std::vector<int>& flight) : flight_(flight), order_(stations.size()) {
+Track::Track(const std::vector<input::Station>& stations, const std::vector<int>& flight) : flight_(flight), order_(stations.size()) {
   size_t n_timed = 0;
-  for (const Station& station : stations) {
+  for (const input::Station& station : stations) {
     centre_.push_back(station.cam_from_model.OriginInSource());
     time_s_.push_back(station.time_s);
     n_timed += station.time_s ? 1 : 0;
@@ -18,7 +18,7 @@ Track::Track(const std::vector<Station>& stations, const std::vector<int>& fligh
     if (time_s_[a].has_value() != time_s_[b].has_value()) return time_s_[a].has_value();
     return time_s_[a] && *time_s_[a] < *time_s_[b];
   });
-  nodes_.resize(static_cast<size_t>(CountFlights(flight_)));
+  nodes_.resize(static_cast<size_t>(input::CountFlights(flight_)));
   std::vector<std::vector<size_t>> members(nodes_.size());
   size_t n_moving = 0;
   for (const size_t i : order_) {
@@ -63,4 +63,4 @@ TrackPoint Track::Before(size_t i, double lag_s) const {
   return {a.position + (time_s - a.time_s) * velocity, velocity};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -6,7 +6,7 @@
 
 #include "prepare/input/station.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct TrackPoint {
   Eigen::Vector3d position;  // in the model's frame
@@ -17,7 +17,7 @@ struct TrackPoint {
 class Track {
  public:
   // `flight` is the flight of each station.
-  Track(const std::vector<Station>& stations, const std::vector<int>& flight);
+  Track(const std::vector<input::Station>& stations, const std::vector<int>& flight);
 
   // Most stations have a time, and the camera moves between them: a lag of the tags can be estimated.
   bool timed() const { return timed_; }
@@ -43,4 +43,4 @@ class Track {
   bool timed_ = false;
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

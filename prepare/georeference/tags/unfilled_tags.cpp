@@ -14,10 +14,8 @@
 #include "prepare/input/station.h"
 #include "prepare/input/tag_accuracy.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
-
-constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
 
 // Values that are filled, for comparison with 0.
 struct HeightRange {
@@ -55,7 +53,7 @@ bool IsZero(const std::optional<double>& value) {
 }
 
 // Nothing when fewer than three photos have both, or when their altitudes are all the same number, which nobody measured.
-std::optional<HeightOffset> OffsetOf(const std::vector<PhotoFile>& photos, const std::vector<size_t>& of) {
+std::optional<HeightOffset> OffsetOf(const std::vector<input::PhotoFile>& photos, const std::vector<size_t>& of) {
   std::vector<double> altitudes, differences;
   for (const size_t i : of) {
     const survey::PhotoTags& tags = photos[i].tags;
@@ -70,16 +68,16 @@ std::optional<HeightOffset> OffsetOf(const std::vector<PhotoFile>& photos, const
 
 class Cleaner {
  public:
-  Cleaner(double flight_gap_s, std::vector<PhotoFile>& photos) : photos_(photos) {
+  Cleaner(double flight_gap_s, std::vector<input::PhotoFile>& photos) : photos_(photos) {
     found_.n_photos = photos.size();
     had_absolute_.assign(photos.size(), 0);
-    std::vector<Station> stations;
-    for (const PhotoFile& photo : photos) stations.push_back(MakeStation(photo.name, {}, photo.tags));
-    flight_ = SplitFlights(stations, flight_gap_s);
+    std::vector<input::Station> stations;
+    for (const input::PhotoFile& photo : photos) stations.push_back(input::MakeStation(photo.name, {}, photo.tags));
+    flight_ = input::SplitFlights(stations, flight_gap_s);
   }
 
   UnfilledTags Run() {
-    for (const PhotoFile& photo : photos_) {
+    for (const input::PhotoFile& photo : photos_) {
       for (const std::string& tag : photo.tags.zero_tags) ++found_.at_reading[tag];
     }
     ClearRelativeIfAllZero();
@@ -98,18 +96,18 @@ class Cleaner {
 
   void ClearRelativeIfAllZero() {
     size_t n = 0;
-    for (const PhotoFile& photo : photos_) {
+    for (const input::PhotoFile& photo : photos_) {
       if (!photo.tags.relative_altitude_m) continue;
       if (*photo.tags.relative_altitude_m != 0.0) return;
       ++n;
     }
-    for (PhotoFile& photo : photos_) photo.tags.relative_altitude_m.reset();
+    for (input::PhotoFile& photo : photos_) photo.tags.relative_altitude_m.reset();
     found_.n_relative += n;
   }
 
   void FindOffsets() {
     std::vector<size_t> all;
-    std::vector<std::vector<size_t>> flights(static_cast<size_t>(CountFlights(flight_)));
+    std::vector<std::vector<size_t>> flights(static_cast<size_t>(input::CountFlights(flight_)));
     for (size_t i = 0; i < photos_.size(); ++i) {
       all.push_back(i);
       flights[static_cast<size_t>(flight_[i])].push_back(i);
@@ -121,7 +119,7 @@ class Cleaner {
   // Of altitudes and RelativeAltitudes; those of one photo that are both 0 are judged apart, as neither can say anything of the other.
   void JudgeZeros() {
     HeightRange altitudes, relatives;
-    for (const PhotoFile& photo : photos_) {
+    for (const input::PhotoFile& photo : photos_) {
       const survey::PhotoTags& tags = photo.tags;
       if (HasAltitude(tags) && tags.gps->height_m != 0.0) altitudes.Add(tags.gps->height_m);
       if (tags.relative_altitude_m && *tags.relative_altitude_m != 0.0) relatives.Add(*tags.relative_altitude_m);
@@ -133,7 +131,7 @@ class Cleaner {
       const bool comparable = offset && HasAltitude(tags) && tags.relative_altitude_m && zero_altitude != zero_relative;
       const bool contradicted = comparable && offset->Contradicts(tags.gps->height_m - *tags.relative_altitude_m);
       if (zero_altitude && (comparable ? contradicted : altitudes.Excludes0())) {
-        tags.gps->height_m = kNoHeight;
+        tags.gps->height_m = std::numeric_limits<double>::quiet_NaN();
         had_absolute_[i] = IsZero(tags.absolute_altitude_m) ? 1 : 0;
         if (had_absolute_[i] != 0) tags.absolute_altitude_m.reset();
         ++found_.n_altitudes;
@@ -150,7 +148,7 @@ class Cleaner {
       survey::PhotoTags& tags = photos_[i].tags;
       const std::optional<HeightOffset>& offset = Offset(i);
       if (!tags.gps || HasAltitude(tags) || !tags.relative_altitude_m || !offset) continue;
-      const double accuracy_m = AccuracyOf(tags).vertical_m;
+      const double accuracy_m = input::AccuracyOf(tags).vertical_m;
       tags.gps->height_m = *tags.relative_altitude_m + offset->metres;
       // So that it counts as measured from what the other photos' altitudes are.
       if (had_absolute_[i] != 0 && tags.position_file.empty()) tags.absolute_altitude_m = tags.gps->height_m;
@@ -168,7 +166,7 @@ class Cleaner {
   void ClearGimbals() {
     constexpr double kLevel_deg = 5.0;
     size_t n_zero = 0, n_others = 0, n_tilted = 0;
-    for (const PhotoFile& photo : photos_) {
+    for (const input::PhotoFile& photo : photos_) {
       if (!photo.tags.gimbal_pitch_deg) continue;
       if (AllAnglesZero(photo.tags)) {
         ++n_zero;
@@ -179,7 +177,7 @@ class Cleaner {
     }
     const bool unfilled = n_others == 0 ? n_zero > 1 : 2 * n_tilted > n_others;
     if (!unfilled) return;
-    for (PhotoFile& photo : photos_) {
+    for (input::PhotoFile& photo : photos_) {
       survey::PhotoTags& tags = photo.tags;
       if (!AllAnglesZero(tags)) continue;
       tags.gimbal_yaw_deg.reset();
@@ -189,7 +187,7 @@ class Cleaner {
     found_.n_gimbal = n_zero;
   }
 
-  std::vector<PhotoFile>& photos_;
+  std::vector<input::PhotoFile>& photos_;
   std::vector<int> flight_;
   std::optional<HeightOffset> of_all_;
   std::vector<std::optional<HeightOffset>> of_flight_;
@@ -214,26 +212,26 @@ std::string UnfilledTags::Describe() const {
   return text;
 }
 
-UnfilledTags ClearUnfilledTags(double flight_gap_s, std::vector<PhotoFile>& photos) {
+UnfilledTags ClearUnfilledTags(double flight_gap_s, std::vector<input::PhotoFile>& photos) {
   if (photos.empty()) return {};
   return Cleaner(flight_gap_s, photos).Run();
 }
 
-void LogUnfilledTags(double flight_gap_s, std::vector<PhotoFile>& photos) {
+void LogUnfilledTags(double flight_gap_s, std::vector<input::PhotoFile>& photos) {
   const UnfilledTags found = ClearUnfilledTags(flight_gap_s, photos);
   if (found.Any()) base::LogWarning("{}", found.Describe());
 }
 
-bool TurnPitchesThatLookUp(std::vector<PhotoFile>& photos) {
+bool TurnPitchesThatLookUp(std::vector<input::PhotoFile>& photos) {
   constexpr double kSteep_deg = 60.0;
   size_t n = 0, n_steep = 0;
-  for (const PhotoFile& photo : photos) {
+  for (const input::PhotoFile& photo : photos) {
     if (!photo.tags.gimbal_pitch_deg) continue;
     ++n;
     n_steep += *photo.tags.gimbal_pitch_deg > kSteep_deg ? 1 : 0;
   }
   if (n == 0 || 10 * n_steep < 9 * n) return false;
-  for (PhotoFile& photo : photos) {
+  for (input::PhotoFile& photo : photos) {
     if (photo.tags.gimbal_pitch_deg) photo.tags.gimbal_pitch_deg = -*photo.tags.gimbal_pitch_deg;
   }
   base::LogWarning(
@@ -244,4 +242,4 @@ bool TurnPitchesThatLookUp(std::vector<PhotoFile>& photos) {
   return true;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -16,7 +16,7 @@
 
 #include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 
 struct UnfilledTags {
   size_t n_photos = 0;
@@ -31,12 +31,12 @@ struct UnfilledTags {
 };
 
 // Changes the photos' tags as said above. `flight_gap_s`: see SplitFlights.
-UnfilledTags ClearUnfilledTags(double flight_gap_s, std::vector<PhotoFile>& photos);
+UnfilledTags ClearUnfilledTags(double flight_gap_s, std::vector<input::PhotoFile>& photos);
 // The same, with a warning when there are such tags.
-void LogUnfilledTags(double flight_gap_s, std::vector<PhotoFile>& photos);
+void LogUnfilledTags(double flight_gap_s, std::vector<input::PhotoFile>& photos);
 
 // Some makers write +90 for a camera that looks straight down. No survey looks up so steeply: when at least nine in ten gimbal pitches are above
 // 60 degrees, all pitches change their sign, with a warning. Returns whether they did.
-bool TurnPitchesThatLookUp(std::vector<PhotoFile>& photos);
+bool TurnPitchesThatLookUp(std::vector<input::PhotoFile>& photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -14,7 +14,7 @@
 #include "core/image/encode.h"
 #include "prepare/input/picture_header.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +145,4 @@ image::Image8 LoadMaskAt(const fs::path& file, int width, int height) {
   return mask.width == width && mask.height == height ? mask : Nearest(mask, width, height);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -9,7 +9,7 @@
 #include "core/image/image.h"
 #include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // How a photo gets its mask.
 struct MaskJob {
@@ -35,4 +35,4 @@ std::filesystem::path WriteMasks(const std::filesystem::path& photo_root, const 
 // is ignored.
 image::Image8 LoadMaskAt(const std::filesystem::path& file, int width, int height);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -6,7 +6,7 @@
 #include "core/base/text.h"
 #include "prepare/input/file_names.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 constexpr std::array<const char*, 5> kMaskExtensions = {".png", ".jpg", ".jpeg", ".tif", ".tiff"};
@@ -113,4 +113,4 @@ bool MaskIndex::AnyInMaskFolder() const {
   return std::any_of(masks_.begin(), masks_.end(), [](const Mask& mask) { return mask.in_mask_folder; });
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

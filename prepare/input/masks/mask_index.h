@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 class MaskIndex {
  public:
@@ -51,4 +51,4 @@ class MaskIndex {
   std::optional<bool> only_for_all_;
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -16,7 +16,7 @@
 #include "prepare/input/masks/mask_index.h"
 #include "prepare/input/masks/named_masks.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -269,4 +269,4 @@ PhotoMasks FindMasks(const fs::path& photo_root, const MaskPlaces& places, const
   return masks;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -9,7 +9,7 @@
 #include "prepare/input/list_files.h"
 #include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // Where masks may be. Paths are absolute.
 struct MaskPlaces {
@@ -44,4 +44,4 @@ struct PhotoMasks {
 PhotoMasks FindMasks(const std::filesystem::path& photo_root, const MaskPlaces& places, const std::vector<PhotoFile>& photos,
                      const std::filesystem::path& own_folder, std::vector<InputFile>& files, base::ThreadPool& threads);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -9,7 +9,7 @@
 #include "prepare/models/input_model.h"
 #include "prepare/models/photo_names.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 // Empty for what is not there or not a text.
@@ -25,7 +25,7 @@ std::map<std::string, std::filesystem::path> NamedMasks(const std::filesystem::p
                                                         const std::vector<std::filesystem::path>& transforms) {
   std::map<std::string, std::filesystem::path> masks;
   if (transforms.empty()) return masks;
-  const ModelPhotos finder(photo_root, photos);
+  const models::ModelPhotos finder(photo_root, photos);
   for (const std::filesystem::path& file : transforms) {
     nlohmann::json json;
     try {
@@ -39,7 +39,7 @@ std::map<std::string, std::filesystem::path> NamedMasks(const std::filesystem::p
     for (const nlohmann::json& frame : json["frames"]) {
       const std::string photo = TextOf(frame, "file_path"), mask = TextOf(frame, "mask_path");
       if (photo.empty() || mask.empty()) continue;
-      const std::filesystem::path path = file.parent_path() / PhotoNames::Cleaned(mask);
+      const std::filesystem::path path = file.parent_path() / models::PhotoNames::Cleaned(mask);
       std::error_code ignored;
       if (std::filesystem::is_regular_file(path, ignored)) {
         masks.emplace(finder.Resolve(photo, file.parent_path()), path);
@@ -53,4 +53,4 @@ std::map<std::string, std::filesystem::path> NamedMasks(const std::filesystem::p
   return masks;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

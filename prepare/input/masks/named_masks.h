@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // Paths of masks by the names of their photos. Files that are no such JSON are passed over: whoever reads the model tells what is wrong. Masks that
 // are not there are left out with a warning.
 std::map<std::string, std::filesystem::path> NamedMasks(const std::filesystem::path& photo_root, const std::vector<std::string>& photos,
                                                         const std::vector<std::filesystem::path>& transforms);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -14,7 +14,7 @@
 #include "prepare/bundle/lens.h"
 #include "prepare/poses/seed/seed_survey.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // To begin with, times the guessed focal length: drones have 0.5 to 1.2 times the longer side, zoom lenses more.
@@ -95,9 +95,9 @@ SeedLens ScaledFocal(const SeedLens& lens, double factor) {
   SeedLens scaled = lens;
   scaled.focal_is_known = true;
   scaled.focal_sigma = kSigma;
-  if (std::optional<Lens> numbers = LensOf(lens.camera)) {
+  if (std::optional<bundle::Lens> numbers = bundle::LensOf(lens.camera)) {
     (*numbers)[0] *= factor;
-    scaled.camera = CameraOf(*numbers, lens.camera);
+    scaled.camera = bundle::CameraOf(*numbers, lens.camera);
   }
   return scaled;
 }
@@ -123,4 +123,4 @@ HeightAboveTakeOff HeightsInModel(const SeedInput& input, const survey::ColmapMo
   return CompareHeights(found, tagged);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -8,7 +8,7 @@
 #include "prepare/poses/seed/seed_input.h"
 #include "prepare/poses/seed/take_off_height.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // By how much the focal lengths of the input's cameras are too short. Nothing when the photos have no RelativeAltitude, or when positions and matches
 // agree with none of several focal lengths. Throws std::logic_error for unknown ids and features.
@@ -21,4 +21,4 @@ SeedLens ScaledFocal(const SeedLens& lens, double factor);
 // tagged positions.
 HeightAboveTakeOff HeightsInModel(const SeedInput& input, const survey::ColmapModel& model);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -7,7 +7,7 @@
 
 #include "core/base/order_statistics.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 using Complex = std::complex<double>;
@@ -137,4 +137,4 @@ Eigen::Quaterniond Turned(const Eigen::Quaterniond& cam_from_enu, double turn_ra
   return (cam_from_enu * Eigen::Quaterniond(Eigen::AngleAxisd(-turn_rad, Eigen::Vector3d::UnitZ()))).normalized();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

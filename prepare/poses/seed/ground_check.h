@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // Some matches of two photos as unit directions in the camera frames.
 struct PairRays {
@@ -38,4 +38,4 @@ std::vector<char> MovesLikeOthers(const PairRays& pair, const std::vector<SeedVi
 // Direction turned about the vertical by `turn_rad`, see GroundCheck.
 Eigen::Quaterniond Turned(const Eigen::Quaterniond& cam_from_enu, double turn_rad);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

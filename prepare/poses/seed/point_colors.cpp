@@ -12,7 +12,7 @@
 #include "core/base/progress.h"
 #include "core/image/image.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 void ColorPoints(survey::ColmapModel& model, const survey::ColmapObservations& observations, const std::filesystem::path& photo_root,
                  base::ThreadPool& threads) {
@@ -55,4 +55,4 @@ void ColorPoints(survey::ColmapModel& model, const survey::ColmapObservations& o
   }
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

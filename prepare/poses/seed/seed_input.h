@@ -12,7 +12,7 @@
 #include "core/camera/camera.h"
 #include "core/geo/geodetic.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 struct SeedPhoto {
   uint32_t image_id = 0;  // in COLMAP's database; unique
@@ -44,4 +44,4 @@ struct SeedInput {
   std::vector<PairMatches> pairs;
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -13,7 +13,7 @@
 #include "prepare/poses/seed/seed_survey.h"
 #include "prepare/poses/seed/verdict.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // Observations of each photo in the adjustment: enough for poses and lens; all others only become points.
@@ -47,25 +47,26 @@ class StageProgress {
 
 class Seeding {
  public:
-  Seeding(BundleProblem bundle, const SeedStart& start, base::ThreadPool& threads) : bundle_(std::move(bundle)), start_(start), threads_(threads) {}
+  Seeding(bundle::BundleProblem bundle, const SeedStart& start, base::ThreadPool& threads)
+      : bundle_(std::move(bundle)), start_(start), threads_(threads) {}
 
-  const BundleProblem& bundle() const { return bundle_; }
+  const bundle::BundleProblem& bundle() const { return bundle_; }
 
   // Empty reason: done.
   std::string Run() {
     const double angle_deg = start_.by_gimbal ? kAngleSigma_deg : kLookDownSigma_deg;
     std::vector<char> counts(bundle_.agrees.size(), 0);
     for (size_t e = 0; e < counts.size(); ++e) counts[e] = bundle_.photos[bundle_.tracks.entries[e].photo].placed ? 1 : 0;
-    chosen_ = ChooseTracks(bundle_, std::vector<char>(bundle_.tracks.size(), 1), counts, kPerPhoto);
-    PlaceOnGround(bundle_, chosen_, start_.height_m);
+    chosen_ = bundle::ChooseTracks(bundle_, std::vector<char>(bundle_.tracks.size(), 1), counts, kPerPhoto);
+    bundle::PlaceOnGround(bundle_, chosen_, start_.height_m);
     // While everything is off by tens of pixels, no observation is given up.
     if (!Adjust("rough poses",
                 {.loss = 16.0, .gentle = true, .free_lens = false, .angle_sigma_deg = angle_deg, .max_iterations = 15, .tolerance = 1e-3})) {
       return kNoSolution;
     }
-    Triangulate(bundle_, chosen_, 50.0, threads_);
+    bundle::Triangulate(bundle_, chosen_, 50.0, threads_);
     if (!Adjust("lens", {.loss = 10.0, .gps_factor = 1.5, .angle_sigma_deg = angle_deg, .max_iterations = 15, .tolerance = 1e-3})) return kNoSolution;
-    Triangulate(bundle_, chosen_, 16.0, threads_);
+    bundle::Triangulate(bundle_, chosen_, 16.0, threads_);
     if (!Adjust("poses", {.loss = 3.0, .gps_factor = 3.0, .angle_sigma_deg = 3.0 * angle_deg, .max_iterations = 15, .tolerance = 1e-4}))
       return kNoSolution;
     // From here the tags only hold the frame. All tracks become points: they show which photos fail, and place those without tags.
@@ -73,8 +74,8 @@ class Seeding {
     if (!Adjust("all photos", Last(1e-4))) return kNoSolution;
     Complete(4.0);
     if (!Adjust("final poses", Last(1e-6))) return kNoSolution;
-    TriangulateAll(bundle_, FinalThreshold(), threads_);
-    if (RemoveContradicted(bundle_) > 0) TriangulateAll(bundle_, FinalThreshold(), threads_);
+    bundle::TriangulateAll(bundle_, FinalThreshold(), threads_);
+    if (RemoveContradicted(bundle_) > 0) bundle::TriangulateAll(bundle_, FinalThreshold(), threads_);
     progress_.Finish();
     return "";
   }
@@ -82,25 +83,26 @@ class Seeding {
  private:
   static constexpr const char* kNoSolution = "the bundle adjustment found no solution";
 
-  static BundleStage Last(double tolerance) {
+  static bundle::BundleStage Last(double tolerance) {
     return {.loss = 1.0, .gps_factor = 10.0, .angle_sigma_deg = 30.0, .max_iterations = 20, .tolerance = tolerance};
   }
 
-  bool Adjust(const std::string& text, const BundleStage& stage) {
+  bool Adjust(const std::string& text, const bundle::BundleStage& stage) {
     progress_.Begin(text, stage.max_iterations);
-    const bool solved = AdjustBundle(bundle_, chosen_, stage, [this] { progress_.Step(); });
+    const bool solved = bundle::AdjustBundle(bundle_, chosen_, stage, [this] { progress_.Step(); });
     progress_.End();
     return solved;
   }
 
   // Points of all tracks, photos that contradict them removed, those without pose placed by them, and tracks chosen anew among what agrees.
   void Complete(double threshold) {
-    TriangulateAll(bundle_, threshold, threads_);
+    bundle::TriangulateAll(bundle_, threshold, threads_);
     const size_t removed = RemoveContradicted(bundle_);
-    if (removed > 0) TriangulateAll(bundle_, threshold, threads_);
+    if (removed > 0) bundle::TriangulateAll(bundle_, threshold, threads_);
     // Photos that see only others without a pose follow in a second round.
-    for (int round = 0; round < 2 && ResectPhotos(bundle_, 2.0 * threshold) > 0; ++round) TriangulateAll(bundle_, threshold, threads_);
-    chosen_ = ChooseTracks(bundle_, bundle_.has_point, bundle_.agrees, kPerPhoto);
+    for (int round = 0; round < 2 && bundle::ResectPhotos(bundle_, 2.0 * threshold) > 0; ++round)
+      bundle::TriangulateAll(bundle_, threshold, threads_);
+    chosen_ = bundle::ChooseTracks(bundle_, bundle_.has_point, bundle_.agrees, kPerPhoto);
   }
 
   // A few times the usual error, so that a sharp survey is not blurred by matches that are only nearly right.
@@ -109,7 +111,7 @@ class Seeding {
     return std::clamp(kTimes * Judge(bundle_, start_.height_m).median_error, kLeast, kMost);
   }
 
-  BundleProblem bundle_;
+  bundle::BundleProblem bundle_;
   const SeedStart& start_;
   base::ThreadPool& threads_;
   std::vector<uint32_t> chosen_;
@@ -117,7 +119,7 @@ class Seeding {
 };
 
 // Observations of each photo that agree with points that at least three photos see.
-std::vector<size_t> CountFirmObservations(const BundleProblem& bundle, const std::vector<uint32_t>& n_agreeing) {
+std::vector<size_t> CountFirmObservations(const bundle::BundleProblem& bundle, const std::vector<uint32_t>& n_agreeing) {
   std::vector<size_t> n(bundle.photos.size(), 0);
   for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
     if (n_agreeing[t] < 3) continue;
@@ -128,7 +130,7 @@ std::vector<size_t> CountFirmObservations(const BundleProblem& bundle, const std
 
 // Points of the model. An error along the line that joins two photos shows in none of them, so points that only two photos see are left out (COLMAP's
 // default too), except where a photo has few others.
-std::vector<uint32_t> TracksOfModel(const BundleProblem& bundle) {
+std::vector<uint32_t> TracksOfModel(const bundle::BundleProblem& bundle) {
   constexpr size_t kEnough = 200;
   std::vector<uint32_t> n_agreeing(bundle.tracks.size(), 0), tracks;
   for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
@@ -147,15 +149,15 @@ std::vector<uint32_t> TracksOfModel(const BundleProblem& bundle) {
   return tracks;
 }
 
-SeededModel ModelOf(const SeedInput& input, const BundleProblem& bundle) {
+SeededModel ModelOf(const SeedInput& input, const bundle::BundleProblem& bundle) {
   SeededModel seeded;
   size_t i = 0;
   for (const auto& [id, lens] : input.cameras) {
-    seeded.model.cameras.emplace(id, CameraOf(bundle.lenses[i].numbers, lens.camera));
+    seeded.model.cameras.emplace(id, bundle::CameraOf(bundle.lenses[i].numbers, lens.camera));
     ++i;
   }
   for (i = 0; i < bundle.photos.size(); ++i) {
-    const BundlePhoto& photo = bundle.photos[i];
+    const bundle::BundlePhoto& photo = bundle.photos[i];
     if (!photo.placed) continue;
     survey::ColmapImage image{input.photos[i].image_id, input.photos[i].camera_id, input.photos[i].name, {}};
     image.cam_from_world = {photo.cam_from_enu, -(photo.cam_from_enu * photo.centre)};
@@ -217,4 +219,4 @@ void WriteSeededModel(const SeededModel& seeded, const std::filesystem::path& fo
   survey::WriteColmapBinary(seeded.model, seeded.observations, folder);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

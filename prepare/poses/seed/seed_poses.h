@@ -12,7 +12,7 @@
 #include "core/survey/colmap_model.h"
 #include "prepare/poses/seed/seed_input.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 struct SeededModel {
   survey::ColmapModel model;                // ENU metres about the median of the tags, as good as the tags; points are black
@@ -31,4 +31,4 @@ std::optional<SeededModel> SeedPoses(const SeedInput& input, base::ThreadPool& t
 // The model in COLMAP's binary format, with its observations.
 void WriteSeededModel(const SeededModel& seeded, const std::filesystem::path& folder);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

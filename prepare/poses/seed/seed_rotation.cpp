@@ -12,7 +12,7 @@
 #include "core/base/order_statistics.h"
 #include "core/linear/sparse.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 using Complex = std::complex<double>;
@@ -232,4 +232,4 @@ std::vector<std::optional<Eigen::Quaterniond>> RotationsLookingDown(const std::v
   return rotations;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -8,7 +8,7 @@
 
 #include "prepare/poses/seed/ground_check.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // cam_from_enu by gimbal angles in degrees: yaw clockwise from north, pitch -90 straight down, positive roll lowers the right side.
 Eigen::Quaterniond RotationFromAngles(double yaw_deg, double pitch_deg, double roll_deg);
@@ -18,4 +18,4 @@ Eigen::Quaterniond RotationFromAngles(double yaw_deg, double pitch_deg, double r
 // their weight. Nothing for photos without known position and for those that no pair ties to others. `views` need positions only.
 std::vector<std::optional<Eigen::Quaterniond>> RotationsLookingDown(const std::vector<PairRays>& pairs, const std::vector<SeedView>& views);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -14,7 +14,7 @@
 #include "core/geo/enu_frame.h"
 #include "prepare/poses/seed/seed_rotation.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // However accurate a tag, the camera is not where the antenna is, and a receiver lags.
@@ -59,14 +59,14 @@ geo::Geodetic MiddleTag(const std::vector<geo::Geodetic>& tags) {
   });
 }
 
-void SetPlaces(const SeedInput& input, const std::vector<geo::Geodetic>& tags, std::vector<BundlePhoto>* photos) {
+void SetPlaces(const SeedInput& input, const std::vector<geo::Geodetic>& tags, std::vector<bundle::BundlePhoto>* photos) {
   const geo::EnuFrame frame(MiddleTag(tags));
   std::vector<double> heights;
   std::vector<char> has_height(input.photos.size(), 0);
   for (size_t i = 0; i < input.photos.size(); ++i) {
     const auto tag = UsableTag(input.photos[i]);
     if (!tag) continue;
-    BundlePhoto& photo = (*photos)[i];
+    bundle::BundlePhoto& photo = (*photos)[i];
     photo.gps = frame.EnuFromGeodetic(*tag);
     const double horizontal_m = std::max(input.photos[i].horizontal_sigma_m, kLeastHorizontal_m);
     photo.gps_sigma = Eigen::Vector3d(horizontal_m, horizontal_m, std::max(input.photos[i].vertical_sigma_m, kLeastVertical_m));
@@ -75,16 +75,16 @@ void SetPlaces(const SeedInput& input, const std::vector<geo::Geodetic>& tags, s
   }
   const double usual = heights.empty() ? 0.0 : base::Median(heights);
   for (size_t i = 0; i < photos->size(); ++i) {
-    BundlePhoto& photo = (*photos)[i];
+    bundle::BundlePhoto& photo = (*photos)[i];
     if (!photo.gps || has_height[i] != 0) continue;
     photo.gps->z() = usual;
     photo.gps_sigma.z() = kUnknownHeight_m;
   }
 }
 
-std::vector<Eigen::Vector3d> RaysOf(const SeedSurvey& survey, const IndexedPair& pair, size_t side, size_t step) {
+std::vector<Eigen::Vector3d> RaysOf(const SeedSurvey& survey, const bundle::IndexedPair& pair, size_t side, size_t step) {
   const uint32_t photo = side == 0 ? pair.a : pair.b;
-  const BundleLens& lens = survey.lenses[static_cast<size_t>(survey.photos[photo].lens)];
+  const bundle::BundleLens& lens = survey.lenses[static_cast<size_t>(survey.photos[photo].lens)];
   std::vector<Eigen::Vector3d> rays;
   rays.reserve(pair.features.size() / step + 1);
   for (size_t k = 0; k < pair.features.size(); k += step) {
@@ -126,14 +126,14 @@ bool MakeSeedSurvey(const SeedInput& input, SeedSurvey* survey, std::string* rea
   }
   std::map<uint32_t, int> lens_of;
   for (const auto& [id, seed] : input.cameras) {
-    const auto numbers = LensOf(seed.camera);
+    const auto numbers = bundle::LensOf(seed.camera);
     if (!numbers || !seed.camera.Problem().empty()) {
       *reason = "camera model " + camera::ModelName(seed.camera.model) + " is left to the mapper";
       return false;
     }
     lens_of.emplace(id, static_cast<int>(survey->lenses.size()));
     survey->lenses.push_back({*numbers, *numbers, seed.camera, seed.focal_is_known ? seed.focal_sigma : kGuessedFocalSigma,
-                              std::max(seed.camera.width, seed.camera.height) / kUnitWidth_px});
+                              std::max(seed.camera.width, seed.camera.height) / bundle::kUnitWidth_px});
   }
   std::map<uint32_t, uint32_t> index;
   survey->photos.resize(n);
@@ -159,7 +159,7 @@ bool MakeSeedSurvey(const SeedInput& input, SeedSurvey* survey, std::string* rea
     *reason = "no two photos have enough matches";
     return false;
   }
-  for (const IndexedPair& pair : survey->pairs) {
+  for (const bundle::IndexedPair& pair : survey->pairs) {
     const size_t step = std::max<size_t>(1, (pair.features.size() + kMaxRays - 1) / kMaxRays);
     survey->rays.push_back({pair.a, pair.b, RaysOf(*survey, pair, 0, step), RaysOf(*survey, pair, 1, step)});
   }
@@ -211,26 +211,26 @@ std::vector<SeedStart> FindStarts(const SeedSurvey& survey, std::string* reason)
   return starts;
 }
 
-BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& start, base::ThreadPool& threads) {
-  BundleProblem bundle;
+bundle::BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& start, base::ThreadPool& threads) {
+  bundle::BundleProblem bundle;
   bundle.photos = survey.photos;
   bundle.lenses = survey.lenses;
   for (size_t i = 0; i < bundle.photos.size(); ++i) {
     const SeedView& view = start.views[i];
     if (!view.known) continue;
-    BundlePhoto& photo = bundle.photos[i];
+    bundle::BundlePhoto& photo = bundle.photos[i];
     photo.placed = true;
     photo.cam_from_enu = view.cam_from_enu;
     photo.centre = view.centre;
     photo.tagged_rotation = view.cam_from_enu;
   }
-  std::vector<IndexedPair> pairs(survey.pairs.size());
+  std::vector<bundle::IndexedPair> pairs(survey.pairs.size());
   threads.ParallelFor(static_cast<int64_t>(pairs.size()), [&](int64_t k, int) {
     base::ThrowIfCancelled();
-    const IndexedPair& pair = survey.pairs[static_cast<size_t>(k)];
+    const bundle::IndexedPair& pair = survey.pairs[static_cast<size_t>(k)];
     const PairRays rays{pair.a, pair.b, RaysOf(survey, pair, 0, 1), RaysOf(survey, pair, 1, 1)};
     const std::vector<char> like = MovesLikeOthers(rays, start.views);
-    IndexedPair& kept = pairs[static_cast<size_t>(k)];
+    bundle::IndexedPair& kept = pairs[static_cast<size_t>(k)];
     kept.a = pair.a;
     kept.b = pair.b;
     for (size_t m = 0; m < pair.features.size(); ++m) {
@@ -239,9 +239,9 @@ BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& start, base:
   });
   std::vector<size_t> n_features;
   for (const SeedPhoto& photo : survey.input->photos) n_features.push_back(photo.features.size());
-  bundle.tracks = JoinMatches(pairs, n_features);
+  bundle.tracks = bundle::JoinMatches(pairs, n_features);
   bundle.pixel.reserve(bundle.tracks.entries.size());
-  for (const TrackEntry& entry : bundle.tracks.entries)
+  for (const bundle::TrackEntry& entry : bundle.tracks.entries)
     bundle.pixel.push_back(survey.input->photos[entry.photo].features[entry.feature].cast<double>());
   bundle.point.assign(bundle.tracks.size(), Eigen::Vector3d::Zero());
   bundle.has_point.assign(bundle.tracks.size(), 0);
@@ -249,4 +249,4 @@ BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& start, base:
   return bundle;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -10,15 +10,15 @@
 #include "prepare/poses/seed/ground_check.h"
 #include "prepare/poses/seed/seed_input.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // The input with indices in place of ids. Keeps a pointer to the input.
 struct SeedSurvey {
   const SeedInput* input = nullptr;
-  std::vector<BundlePhoto> photos;  // none placed; positions in ENU about the photo in the middle
-  std::vector<BundleLens> lenses;
-  std::vector<IndexedPair> pairs;  // without those of a photo with itself or with fewer than kLeastPairMatches matches
-  std::vector<PairRays> rays;      // at most kMaxRays of each pair
+  std::vector<bundle::BundlePhoto> photos;  // none placed; positions in ENU about the photo in the middle
+  std::vector<bundle::BundleLens> lenses;
+  std::vector<bundle::IndexedPair> pairs;  // without those of a photo with itself or with fewer than kLeastPairMatches matches
+  std::vector<PairRays> rays;              // at most kMaxRays of each pair
 };
 
 constexpr size_t kLeastPairMatches = 15;
@@ -42,6 +42,6 @@ struct SeedStart {
 std::vector<SeedStart> FindStarts(const SeedSurvey& survey, std::string* reason);
 
 // The bundle with these poses, and the tracks of the matches that move like the others of their pair.
-BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& start, base::ThreadPool& threads);
+bundle::BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& start, base::ThreadPool& threads);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

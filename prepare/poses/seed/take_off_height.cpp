@@ -4,7 +4,7 @@
 
 #include "core/base/order_statistics.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 constexpr double kNotableLow = 0.9, kNotableHigh = 1.1, kNotable_m = 3.0;
@@ -43,4 +43,4 @@ HeightAboveTakeOff CompareHeights(const std::vector<double>& found_m, const std:
   return {.n = n, .found_m = base::Median(std::move(found)), .tagged_m = base::Median(std::move(tagged)), .ratio = base::Median(std::move(ratio))};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // Height of the cameras above the ground beside RelativeAltitude, which is above the place of take-off.
 struct HeightAboveTakeOff {
@@ -26,4 +26,4 @@ struct HeightAboveTakeOff {
 HeightAboveTakeOff CompareHeights(const std::vector<double>& found_m, const std::vector<double>& tagged_m);
 constexpr double kLeastAltitude_m = 5.0;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

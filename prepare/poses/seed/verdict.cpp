@@ -9,7 +9,7 @@
 #include "core/base/order_statistics.h"
 #include "prepare/bundle/resect.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 constexpr double kMaxError = 1.5;
@@ -22,7 +22,7 @@ struct Tally {
   std::vector<size_t> agreeing, possible;
 };
 
-Tally Count(const BundleProblem& bundle) {
+Tally Count(const bundle::BundleProblem& bundle) {
   Tally tally{std::vector<size_t>(bundle.photos.size(), 0), std::vector<size_t>(bundle.photos.size(), 0)};
   for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
     const uint32_t first = bundle.tracks.first[t], last = bundle.tracks.first[t + 1];
@@ -40,7 +40,7 @@ Tally Count(const BundleProblem& bundle) {
 }
 
 // Numbers of common points of pairs of photos; the key is the first photo times 2^32 plus the second.
-std::unordered_map<uint64_t, size_t> SharedPoints(const BundleProblem& bundle) {
+std::unordered_map<uint64_t, size_t> SharedPoints(const bundle::BundleProblem& bundle) {
   std::unordered_map<uint64_t, size_t> shared;
   std::vector<uint32_t> seen;
   for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
@@ -59,7 +59,7 @@ std::unordered_map<uint64_t, size_t> SharedPoints(const BundleProblem& bundle) {
   return shared;
 }
 
-size_t KeepLargestGroup(BundleProblem& bundle) {
+size_t KeepLargestGroup(bundle::BundleProblem& bundle) {
   base::DisjointSets groups(bundle.photos.size());
   for (const auto& [pair, n] : SharedPoints(bundle)) {
     if (n < kLeastShared) continue;
@@ -78,7 +78,7 @@ size_t KeepLargestGroup(BundleProblem& bundle) {
 }
 
 // Per photo, the most tracks that it has in common with one placed photo.
-std::vector<size_t> MostCommonTracks(const BundleProblem& bundle) {
+std::vector<size_t> MostCommonTracks(const bundle::BundleProblem& bundle) {
   std::vector<std::unordered_map<uint32_t, size_t>> common(bundle.photos.size());
   for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
     const uint32_t first = bundle.tracks.first[t], last = bundle.tracks.first[t + 1];
@@ -103,7 +103,7 @@ std::vector<size_t> MostCommonTracks(const BundleProblem& bundle) {
 }
 
 // Photos without a pose that hardly look like any placed photo, as those of another place: nobody else could place them.
-std::vector<char> FindStrangers(const BundleProblem& bundle) {
+std::vector<char> FindStrangers(const bundle::BundleProblem& bundle) {
   const std::vector<size_t> most = MostCommonTracks(bundle);
   std::vector<double> usual;
   for (size_t i = 0; i < most.size(); ++i) {
@@ -133,28 +133,28 @@ std::string Fixed(double value) {
 
 }  // namespace
 
-size_t RemoveContradicted(BundleProblem& bundle) {
+size_t RemoveContradicted(bundle::BundleProblem& bundle) {
   const Tally tally = Count(bundle);
   size_t removed = 0;
   for (size_t i = 0; i < bundle.photos.size(); ++i) {
     if (!bundle.photos[i].placed) continue;
     const auto agreeing = static_cast<double>(tally.agreeing[i]), possible = static_cast<double>(tally.possible[i]);
-    if (tally.agreeing[i] >= kLeastObservations && agreeing >= kLeastShare * possible) continue;
+    if (tally.agreeing[i] >= bundle::kLeastObservations && agreeing >= kLeastShare * possible) continue;
     bundle.photos[i].placed = false;
     ++removed;
   }
   return removed + KeepLargestGroup(bundle);
 }
 
-Verdict Judge(const BundleProblem& bundle, double height_m) {
+Verdict Judge(const bundle::BundleProblem& bundle, double height_m) {
   Verdict verdict;
   std::vector<size_t> n_entries(bundle.photos.size(), 0);
-  for (const TrackEntry& entry : bundle.tracks.entries) ++n_entries[entry.photo];
+  for (const bundle::TrackEntry& entry : bundle.tracks.entries) ++n_entries[entry.photo];
   const std::vector<char> strange = FindStrangers(bundle);
   std::vector<double> off_m;
   for (size_t i = 0; i < bundle.photos.size(); ++i) {
-    const BundlePhoto& photo = bundle.photos[i];
-    verdict.n_matched += n_entries[i] >= kLeastObservations && strange[i] == 0 ? 1 : 0;
+    const bundle::BundlePhoto& photo = bundle.photos[i];
+    verdict.n_matched += n_entries[i] >= bundle::kLeastObservations && strange[i] == 0 ? 1 : 0;
     verdict.n_placed += photo.placed ? 1 : 0;
     if (photo.placed && photo.gps) off_m.push_back((photo.centre - *photo.gps).head<2>().norm());
   }
@@ -186,4 +186,4 @@ Verdict Judge(const BundleProblem& bundle, double height_m) {
   return verdict;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -5,12 +5,12 @@
 
 #include "prepare/bundle/bundle_problem.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // Takes the pose from photos with fewer than kLeastObservations agreeing entries or with less than kLeastShare of those that should agree, and from
 // those that share points only with few others: the largest group that is tied together by at least kLeastShared common points each remains. Returns
 // the number of photos that lost their pose. Entries must be up to date (Triangulate).
-size_t RemoveContradicted(BundleProblem& bundle);
+size_t RemoveContradicted(bundle::BundleProblem& bundle);
 constexpr double kLeastShare = 0.25;
 constexpr size_t kLeastShared = 10;
 
@@ -32,6 +32,6 @@ struct Verdict {
 };
 
 // `height_m` is the height above ground: tags that are off by a good part of it contradict the matches.
-Verdict Judge(const BundleProblem& bundle, double height_m);
+Verdict Judge(const bundle::BundleProblem& bundle, double height_m);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

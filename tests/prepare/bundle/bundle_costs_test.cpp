@@ -12,11 +12,11 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::bundle;
 
 PoseNumbers RandomPose(base::Random& random) {
   const double yaw = random.Uniform(0.0, 360.0), pitch = random.Uniform(-90.0, -40.0);
-  const Eigen::Quaterniond rotation = RotationFromAngles(yaw, pitch, random.Uniform(-10.0, 10.0));
+  const Eigen::Quaterniond rotation = prepare::poses::RotationFromAngles(yaw, pitch, random.Uniform(-10.0, 10.0));
   PoseNumbers pose{};
   Eigen::Map<Eigen::Vector4d>(pose.data()) = rotation.coeffs();
   for (size_t k = 4; k < 7; ++k) pose[k] = random.Uniform(-20.0, 20.0);

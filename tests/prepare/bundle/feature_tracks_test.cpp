@@ -12,7 +12,7 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::bundle;
 
 std::vector<TrackEntry> EntriesOf(const FeatureTracks& tracks, size_t t) {
   return {tracks.entries.begin() + tracks.first[t], tracks.entries.begin() + tracks.first[t + 1]};

@@ -10,7 +10,7 @@
 #include "core/linear/linear.h"
 #include "prepare/bundle/camera_sample.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::bundle {
 namespace {
 
 using Eigen::Index;
@@ -227,4 +227,4 @@ TEST(CameraSample, KeepsTheLargestConnectedGroup) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::bundle

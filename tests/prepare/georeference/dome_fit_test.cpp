@@ -9,7 +9,7 @@
 #include "core/base/random.h"
 #include "tests/support/not_finite.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 // Lines of `columns` photos, flown to and fro, 20 m apart in both directions.
@@ -121,4 +121,4 @@ TEST(DomeFit, LeavesOutWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -10,13 +10,13 @@
 #include "core/linear/linear.h"
 #include "tests/prepare/synthetic_flight.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
-std::vector<Station> Stations(const test::Flight& flight) {
-  std::vector<Station> stations;
+std::vector<input::Station> Stations(const test::Flight& flight) {
+  std::vector<input::Station> stations;
   for (size_t i = 0; i < flight.photos.size(); ++i) {
-    stations.push_back(MakeStation(flight.photos[i].name, flight.model.images[i].cam_from_world, flight.photos[i].tags));
+    stations.push_back(input::MakeStation(flight.photos[i].name, flight.model.images[i].cam_from_world, flight.photos[i].tags));
   }
   return stations;
 }
@@ -80,9 +80,9 @@ TEST(Georeference, ARefusedFitLeavesNoAccuracyBehind) {
 // Pitch of +90 at nadir: gimbal angles outweigh everything else, and a survey that hangs upside down looks mirrored to its GPS tags.
 TEST(Georeference, GimbalAnglesThatStandAloneAreDropped) {
   const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
-  std::vector<Station> stations = Stations(flight);
+  std::vector<input::Station> stations = Stations(flight);
   const Georeference without = PlaceOnEarth(stations, Points(flight), {});
-  for (Station& station : stations) station.up_in_cam = UpInCamera(90.0, 0.0);
+  for (input::Station& station : stations) station.up_in_cam = input::UpInCamera(90.0, 0.0);
   const Georeference result = PlaceOnEarth(stations, Points(flight), {});
   ASSERT_TRUE(result.ok);
   EXPECT_EQ(result.gimbal.use, GimbalUse::kDropped);
@@ -91,7 +91,7 @@ TEST(Georeference, GimbalAnglesThatStandAloneAreDropped) {
   EXPECT_EQ(result.enu_from_model.rotation.coeffs(), without.enu_from_model.rotation.coeffs());
   EXPECT_EQ(result.enu_from_model.translation, without.enu_from_model.translation);
   // Right angles are used.
-  for (Station& station : stations) station.up_in_cam = UpInCamera(-90.0, 0.0);
+  for (input::Station& station : stations) station.up_in_cam = input::UpInCamera(-90.0, 0.0);
   const Georeference right = PlaceOnEarth(stations, Points(flight), {});
   EXPECT_EQ(right.gimbal.use, GimbalUse::kUsed);
   EXPECT_EQ(right.fit.gravity.front().kind, "gimbal");
@@ -161,10 +161,10 @@ TEST(Georeference, TheRtkFlightIsTheReference) {
 
 TEST(Georeference, TooFewOrOnePlaceIsNotOk) {
   test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
-  std::vector<Station> stations = Stations(flight);
+  std::vector<input::Station> stations = Stations(flight);
   for (size_t i = 2; i < stations.size(); ++i) stations[i].gps.reset();
   EXPECT_FALSE(PlaceOnEarth(stations, {}, {}).ok);
-  for (Station& station : stations) station.gps.reset();
+  for (input::Station& station : stations) station.gps.reset();
   EXPECT_FALSE(PlaceOnEarth(stations, {}, {}).ok);
   EXPECT_FALSE(PlaceOnEarth({}, {}, {}).ok);
   test::SetTags(flight, [](size_t, const Eigen::Vector3d&) { return Eigen::Vector3d(1.0, 2.0, 3.0); });
@@ -176,7 +176,7 @@ TEST(Georeference, TooFewOrOnePlaceIsNotOk) {
 TEST(Georeference, AnExactFrameStaysAndStillReportsResiduals) {
   test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
   test::SetTags(flight, [](size_t, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(3.0, 0.0, 4.0)); });
-  std::vector<Station> stations = Stations(flight);
+  std::vector<input::Station> stations = Stations(flight);
   for (size_t i = 0; i < stations.size(); ++i) {
     stations[i].cam_from_model.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
     stations[i].cam_from_model.translation = -(stations[i].cam_from_model.rotation * flight.photos[i].centre_in_enu);
@@ -190,26 +190,26 @@ TEST(Georeference, AnExactFrameStaysAndStillReportsResiduals) {
 }
 
 TEST(SplitFlights, GoesByTimeNotByName) {
-  std::vector<Station> stations(6);
+  std::vector<input::Station> stations(6);
   const double times[] = {1000.0, 0.0, 5000.0, 500.0, -1.0, 5100.0};
   for (size_t i = 0; i < 6; ++i) {
     if (times[i] >= 0.0) stations[i].time_s = times[i];
   }
-  EXPECT_EQ(SplitFlights(stations, 900.0), (std::vector<int>{0, 0, 1, 0, 0, 1}));
-  EXPECT_EQ(SplitFlights(stations, 400.0), (std::vector<int>{2, 0, 3, 1, 1, 3}));
-  EXPECT_TRUE(SplitFlights({}, 900.0).empty());
+  EXPECT_EQ(input::SplitFlights(stations, 900.0), (std::vector<int>{0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(input::SplitFlights(stations, 400.0), (std::vector<int>{2, 0, 3, 1, 1, 3}));
+  EXPECT_TRUE(input::SplitFlights({}, 900.0).empty());
 }
 
 TEST(LocalFrame, PutsTheGroundBelowAtAFixedDepth) {
   const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
-  const std::vector<Station> stations = Stations(flight);
+  const std::vector<input::Station> stations = Stations(flight);
   const geo::Similarity3d local = LocalFrame(stations, Points(flight), FindGravity(stations, Points(flight)).up);
   EXPECT_NEAR((local.rotation * (flight.model_from_enu.rotation * Eigen::Vector3d::UnitZ())).z(), 1.0, 1e-5);
   EXPECT_NEAR((local * stations[7].cam_from_model.OriginInSource()).z(), kLocalDepth, 5.0);
 }
 
 TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirHorizons) {
-  std::vector<Station> stations;
+  std::vector<input::Station> stations;
   const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
   const Eigen::Quaterniond tilt = linear::RotationBetween(Eigen::Vector3d::UnitZ(), up);
   for (int i = 0; i < 12; ++i) {
@@ -219,7 +219,7 @@ TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirHorizons) {
     const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
     Eigen::Matrix3d world_from_cam;
     world_from_cam << right, forward.cross(right), forward;
-    Station station;
+    input::Station station;
     station.cam_from_model.rotation = Eigen::Quaterniond(world_from_cam).conjugate() * tilt.conjugate();
     station.cam_from_model.translation = -(station.cam_from_model.rotation * (tilt * centre));
     stations.push_back(station);
@@ -232,4 +232,4 @@ TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirHorizons) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -12,13 +12,13 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::georeference;
 using Eigen::Vector3d;
 
 // A lawnmower over level ground in a random frame. `tagged`: what the tags make of pitch and roll.
 struct TaggedSurvey {
   geo::Similarity3d model_from_enu;
-  std::vector<Station> stations = {};
+  std::vector<prepare::input::Station> stations = {};
   std::vector<Vector3d> points = {};
 };
 
@@ -48,15 +48,15 @@ Attitude OneWayOblique(int) {
 }
 
 Vector3d Right(const Attitude& a) {
-  return UpInCamera(a.pitch_deg, a.roll_deg);
+  return prepare::input::UpInCamera(a.pitch_deg, a.roll_deg);
 }
 
 Vector3d OppositePitch(const Attitude& a) {
-  return UpInCamera(-a.pitch_deg, a.roll_deg);
+  return prepare::input::UpInCamera(-a.pitch_deg, a.roll_deg);
 }
 
 Vector3d FromStraightDown(const Attitude& a) {
-  return UpInCamera(a.pitch_deg + 90.0, a.roll_deg);
+  return prepare::input::UpInCamera(a.pitch_deg + 90.0, a.roll_deg);
 }
 
 GimbalVerdict VerdictOf(const TaggedSurvey& survey, const std::optional<Vector3d>& tags_up) {
@@ -105,8 +105,9 @@ TEST(GimbalCheck, OppositePitchIsDroppedWhenPointsOrTagsContradictIt) {
 
 TEST(GimbalCheck, OtherWrongAnglesAreDroppedWhenTagsContradictThem) {
   const std::function<Attitude(int)> one_way = [](int) { return Attitude{.yaw_deg = 20.0}; };
-  const std::function<Vector3d(const Attitude&)> kinds[] = {FromStraightDown, OppositePitch, [](const Attitude&) { return UpInCamera(0.0, 0.0); },
-                                                            [](const Attitude&) { return UpInCamera(-30.0, 60.0); }};
+  const std::function<Vector3d(const Attitude&)> kinds[] = {FromStraightDown, OppositePitch,
+                                                            [](const Attitude&) { return prepare::input::UpInCamera(0.0, 0.0); },
+                                                            [](const Attitude&) { return prepare::input::UpInCamera(-30.0, 60.0); }};
   uint64_t seed = 20;
   for (const auto& tagged : kinds) {
     const TaggedSurvey survey = MakeTagged(seed++, one_way, tagged);
@@ -120,22 +121,22 @@ TEST(GimbalCheck, OtherWrongAnglesAreDroppedWhenTagsContradictThem) {
 
 TEST(GimbalCheck, NoAnglesNoVerdict) {
   TaggedSurvey survey = MakeTagged(11, LinesDown, Right);
-  for (Station& station : survey.stations) station.up_in_cam.reset();
+  for (prepare::input::Station& station : survey.stations) station.up_in_cam.reset();
   EXPECT_EQ(VerdictOf(survey, std::nullopt).use, GimbalUse::kUsed);
   EXPECT_EQ(JudgeGimbal({}, {}, [] { return std::nullopt; }).use, GimbalUse::kUsed);
 }
 
 TEST(FaultOfAngles, KnowsTheUsualOnes) {
   for (const double pitch_deg : {-90.0, -75.0, -55.0}) {
-    const Vector3d found = UpInCamera(pitch_deg, 2.0);
-    EXPECT_EQ(FaultOfAngles(UpInCamera(pitch_deg + 10.0, 0.0), found), GimbalFault::kNone);
-    EXPECT_EQ(FaultOfAngles(UpInCamera(-pitch_deg, 2.0), found), GimbalFault::kOppositePitch);
-    EXPECT_EQ(FaultOfAngles(UpInCamera(0.0, 0.0), found), GimbalFault::kAllZero);
-    EXPECT_EQ(FaultOfAngles(UpInCamera(pitch_deg, 95.0), UpInCamera(-20.0, 0.0)), GimbalFault::kOther);
+    const Vector3d found = prepare::input::UpInCamera(pitch_deg, 2.0);
+    EXPECT_EQ(FaultOfAngles(prepare::input::UpInCamera(pitch_deg + 10.0, 0.0), found), GimbalFault::kNone);
+    EXPECT_EQ(FaultOfAngles(prepare::input::UpInCamera(-pitch_deg, 2.0), found), GimbalFault::kOppositePitch);
+    EXPECT_EQ(FaultOfAngles(prepare::input::UpInCamera(0.0, 0.0), found), GimbalFault::kAllZero);
+    EXPECT_EQ(FaultOfAngles(prepare::input::UpInCamera(pitch_deg, 95.0), prepare::input::UpInCamera(-20.0, 0.0)), GimbalFault::kOther);
   }
-  EXPECT_EQ(FaultOfAngles(UpInCamera(5.0, 2.0), UpInCamera(-85.0, 2.0)), GimbalFault::kFromStraightDown);
+  EXPECT_EQ(FaultOfAngles(prepare::input::UpInCamera(5.0, 2.0), prepare::input::UpInCamera(-85.0, 2.0)), GimbalFault::kFromStraightDown);
   // Level cameras may have all angles 0.
-  EXPECT_EQ(FaultOfAngles(UpInCamera(0.0, 0.0), UpInCamera(3.0, 0.0)), GimbalFault::kNone);
+  EXPECT_EQ(FaultOfAngles(prepare::input::UpInCamera(0.0, 0.0), prepare::input::UpInCamera(3.0, 0.0)), GimbalFault::kNone);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "tests/prepare/georeference/made_stations.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Vector3d;
@@ -21,7 +21,7 @@ constexpr int kCameras = 40;
 
 struct Attempt {
   geo::Similarity3d model_from_enu;
-  std::vector<Station> stations = {};
+  std::vector<input::Station> stations = {};
 
   Vector3d Up() const { return model_from_enu.rotation * Vector3d::UnitZ(); }
 };
@@ -33,7 +33,7 @@ Attempt MakeAttempt(uint64_t seed, const std::function<Attitude(int)>& attitude)
   for (int i = 0; i < kCameras; ++i) {
     const Attitude a = attitude(i);
     attempt.stations.push_back(test::StationAt(test::OnLawnmower(i, kCameras), a, attempt.model_from_enu));
-    attempt.stations.back().up_in_cam = UpInCamera(a.pitch_deg, a.roll_deg);
+    attempt.stations.back().up_in_cam = input::UpInCamera(a.pitch_deg, a.roll_deg);
   }
   return attempt;
 }
@@ -42,8 +42,8 @@ Attitude NadirLines(int i) {
   return {.yaw_deg = (i / test::kLine) % 2 == 0 ? 20.0 : 200.0};
 }
 
-void WithoutAngles(std::vector<Station>& stations) {
-  for (Station& station : stations) station.up_in_cam.reset();
+void WithoutAngles(std::vector<input::Station>& stations) {
+  for (input::Station& station : stations) station.up_in_cam.reset();
 }
 
 // Ground below the lawnmower that rises towards the east by `slope_deg`.
@@ -62,7 +62,7 @@ TEST(UpInCamera, AgreesWithTheCamerasRotation) {
     for (const double pitch_deg : {-90.0, -63.0, -30.0, 0.0, 15.0}) {
       for (const double roll_deg : {-40.0, 0.0, 3.0, 180.0}) {
         const Vector3d up = test::CamFromEnu({yaw_deg, pitch_deg, roll_deg}) * Vector3d::UnitZ();
-        EXPECT_LT((UpInCamera(pitch_deg, roll_deg) - up).norm(), 1e-12) << yaw_deg << " " << pitch_deg << " " << roll_deg;
+        EXPECT_LT((input::UpInCamera(pitch_deg, roll_deg) - up).norm(), 1e-12) << yaw_deg << " " << pitch_deg << " " << roll_deg;
       }
     }
   }
@@ -89,7 +89,7 @@ TEST(GimbalEvidence, ACommonErrorCancelsWithOppositeHeadings) {
     Attempt attempt = MakeAttempt(2, NadirLines);
     base::Random random(3);
     const Eigen::Quaterniond common(Eigen::AngleAxisd(common_deg / kDegrees, Vector3d(0.8, 0.6, 0.0)));
-    for (Station& station : attempt.stations) station.up_in_cam = common * (test::SmallRotation(0.5, random) * *station.up_in_cam);
+    for (input::Station& station : attempt.stations) station.up_in_cam = common * (test::SmallRotation(0.5, random) * *station.up_in_cam);
     const UpEvidence evidence = GimbalEvidence(attempt.stations).at(0);
     EXPECT_LT(AngleDeg(evidence.up, attempt.Up()), 0.25);
     EXPECT_LT(evidence.Sigma() * kDegrees, 0.25);
@@ -102,7 +102,7 @@ TEST(GimbalEvidence, TheStatedAccuracyCoversACommonErrorWithOneHeading) {
     Attempt attempt = MakeAttempt(seed, [](int) { return Attitude{.yaw_deg = 70.0}; });
     base::Random random(seed, 1);
     const Eigen::Quaterniond common = test::SmallRotation(kGimbalCommon_deg, random);
-    for (Station& station : attempt.stations) station.up_in_cam = common * (test::SmallRotation(0.5, random) * *station.up_in_cam);
+    for (input::Station& station : attempt.stations) station.up_in_cam = common * (test::SmallRotation(0.5, random) * *station.up_in_cam);
     const UpEvidence evidence = GimbalEvidence(attempt.stations).at(0);
     errors += std::pow(AngleDeg(evidence.up, attempt.Up()), 2);
     stated += std::pow(evidence.Sigma() * kDegrees, 2);
@@ -223,8 +223,8 @@ TEST(FindGravity, WithoutStationsNothingIsKnown) {
 TEST(FindGravity, CamerasTurnedAtRandomAreNotTrusted) {
   for (uint64_t seed = 1; seed <= 5; ++seed) {
     base::Random random(seed);
-    std::vector<Station> stations(30);
-    for (Station& station : stations) {
+    std::vector<input::Station> stations(30);
+    for (input::Station& station : stations) {
       station.cam_from_model.rotation = Eigen::Quaterniond{random.Normal(), random.Normal(), random.Normal(), random.Normal()}.normalized();
     }
     EXPECT_GT(FindGravity(stations, {}).Sigma() * kDegrees, 5.0) << seed;
@@ -242,4 +242,4 @@ TEST(FindGravity, EvidenceThatContradictsItselfWidensTheResult) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -9,7 +9,7 @@
 #include "core/base/order_statistics.h"
 #include "tests/prepare/georeference/made_stations.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Index;
@@ -191,4 +191,4 @@ TEST(HeightBias, ColumnsOfAFlightStayInItAndOnlyOffsetsHaveAMean) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

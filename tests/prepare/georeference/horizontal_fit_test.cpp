@@ -9,7 +9,7 @@
 #include "prepare/georeference/tags/track.h"
 #include "tests/prepare/georeference/made_stations.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Vector2d;
@@ -84,7 +84,7 @@ TEST(FitHorizontally, OfTwoGroupsTheLargerWins) {
 TEST(FitHorizontally, FindsTheLagOnALawnmower) {
   base::Random random(5);
   const geo::Similarity3d model_from_enu{0.1, Eigen::Quaterniond::Identity(), Eigen::Vector3d(1.0, 2.0, 3.0)};
-  const std::vector<Station> stations = test::LawnmowerStations(kTags, model_from_enu);
+  const std::vector<input::Station> stations = test::LawnmowerStations(kTags, model_from_enu);
   const Track track(stations, std::vector<int>(kTags, 0));
   const auto level = [&](size_t k, double lag_s) { return Vector2d(track.Before(k, lag_s).position.head<2>()); };
   HorizontalFitOptions options;
@@ -174,4 +174,4 @@ RC_GTEST_PROP(FitHorizontally, DoesNotDependOnTheOrderOfTags, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -29,8 +29,8 @@ geo::Similarity3d RandomFrame(base::Random& random) {
   return {std::exp(random.Uniform(-3.0, 3.0)), rotation.normalized(), Vector3d{random.Normal(), random.Normal(), random.Normal()}};
 }
 
-prepare::Station StationAt(const Vector3d& centre_in_enu, const Attitude& attitude, const geo::Similarity3d& model_from_enu) {
-  prepare::Station station;
+prepare::input::Station StationAt(const Vector3d& centre_in_enu, const Attitude& attitude, const geo::Similarity3d& model_from_enu) {
+  prepare::input::Station station;
   const Eigen::Quaterniond rotation = CamFromEnu(attitude);
   station.cam_from_model = geo::TransformCameraWorld({rotation, -(rotation * centre_in_enu)}, model_from_enu);
   return station;
@@ -49,8 +49,8 @@ Vector3d OnLawnmower(int photo, int n_photos) {
   return {kStep_m * (line - middle), kStep_m * (along - 0.5 * (kLine - 1)), 60.0};
 }
 
-std::vector<prepare::Station> LawnmowerStations(int n_photos, const geo::Similarity3d& model_from_enu) {
-  std::vector<prepare::Station> stations;
+std::vector<prepare::input::Station> LawnmowerStations(int n_photos, const geo::Similarity3d& model_from_enu) {
+  std::vector<prepare::input::Station> stations;
   stations.reserve(static_cast<size_t>(n_photos));
   for (int i = 0; i < n_photos; ++i) {
     const double yaw_deg = (i / kLine) % 2 == 0 ? 0.0 : 180.0;

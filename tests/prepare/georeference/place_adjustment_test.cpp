@@ -12,7 +12,7 @@
 
 #include "tests/prepare/georeference/made_stations.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Matrix3d;
@@ -26,7 +26,7 @@ constexpr double kHorizontalNoise_m = 2.0, kVerticalNoise_m = 3.0;
 // A lawnmower flight in a model frame with exact tags and gravity.
 struct Problem {
   geo::Similarity3d model_from_enu{0.08, Eigen::Quaterniond(0.6, -0.3, 0.5, 0.2).normalized(), Vector3d(3.0, -2.0, 1.0)};
-  std::vector<Station> stations = test::LawnmowerStations(kPhotos, model_from_enu);
+  std::vector<input::Station> stations = test::LawnmowerStations(kPhotos, model_from_enu);
   Track track{stations, std::vector<int>(kPhotos, 0)};
   Gravity gravity;
   std::vector<Tag> tags;
@@ -45,7 +45,7 @@ struct Problem {
   }
   Vector3d Middle() const {
     Vector3d middle = Vector3d::Zero();
-    for (const Station& station : stations) middle += station.cam_from_model.OriginInSource() / static_cast<double>(stations.size());
+    for (const input::Station& station : stations) middle += station.cam_from_model.OriginInSource() / static_cast<double>(stations.size());
     return middle;
   }
   void AddNoise(base::Random& random) {
@@ -201,4 +201,4 @@ TEST(Adjust, TellsWhatTheTagsAloneSayOfTheTilt) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

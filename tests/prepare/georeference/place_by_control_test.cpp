@@ -31,13 +31,13 @@ survey::ControlFit BentFit(double dome_m) {
 }
 
 TEST(PlaceByControl, ADomeIsReportedBeyondItsNoise) {
-  const std::vector<survey::Problem> problems = prepare::BentByControl(BentFit(0.3));
+  const std::vector<survey::Problem> problems = prepare::georeference::BentByControl(BentFit(0.3));
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems.front().code, "control_dome");
   EXPECT_NE(problems.front().finding.find("high"), std::string::npos) << problems.front().finding;
-  EXPECT_NE(prepare::BentByControl(BentFit(-0.3)).front().finding.find("low"), std::string::npos);
-  EXPECT_TRUE(prepare::BentByControl(BentFit(0.0)).empty());
-  EXPECT_TRUE(prepare::BentByControl(BentFit(0.02)).empty());  // about a pixel
+  EXPECT_NE(prepare::georeference::BentByControl(BentFit(-0.3)).front().finding.find("low"), std::string::npos);
+  EXPECT_TRUE(prepare::georeference::BentByControl(BentFit(0.0)).empty());
+  EXPECT_TRUE(prepare::georeference::BentByControl(BentFit(0.02)).empty());  // about a pixel
 }
 
 TEST(PlaceByControl, WrongAndUnseenPointsSayNothingOfADome) {
@@ -45,17 +45,17 @@ TEST(PlaceByControl, WrongAndUnseenPointsSayNothingOfADome) {
   for (size_t i = 0; i < fit.points.size(); ++i) {
     if (i >= 8) fit.points[i].use = i % 2 == 0 ? ControlUse::kRejected : ControlUse::kUnseen;
   }
-  EXPECT_TRUE(prepare::BentByControl(fit).empty());
+  EXPECT_TRUE(prepare::georeference::BentByControl(fit).empty());
 }
 
 TEST(PlaceByControl, WithoutAFileNothingChanges) {
   base::ThreadPool threads(1);
   survey::ColmapModel model;
-  std::vector<prepare::Station> stations;
-  prepare::Georeference georeference;
+  std::vector<prepare::input::Station> stations;
+  prepare::georeference::Georeference georeference;
   georeference.ok = true;
-  const prepare::PlaceOptions options;
-  const survey::ControlFit fit = prepare::PlaceByControl({options, {}, {}, {}}, model, stations, georeference, threads);
+  const prepare::georeference::PlaceOptions options;
+  const survey::ControlFit fit = prepare::georeference::PlaceByControl({options, {}, {}, {}}, model, stations, georeference, threads);
   EXPECT_TRUE(fit.points.empty());
   EXPECT_TRUE(georeference.ok);
 }

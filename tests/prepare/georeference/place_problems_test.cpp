@@ -7,7 +7,7 @@
 
 #include "prepare/georeference/georeference.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 // A fit without anything to complain about.
@@ -143,4 +143,4 @@ TEST(TooUncertain, HasAThresholdForEachNumber) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -9,15 +9,15 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::georeference;
 
 // A grid of stations in ENU and a geo-reference whose residuals in height have the form of a dome of so much height, with noise.
-void MakeFlight(double dome_m, double noise_m, std::vector<Station>* stations, Georeference* georeference) {
+void MakeFlight(double dome_m, double noise_m, std::vector<prepare::input::Station>* stations, Georeference* georeference) {
   base::Random random(2, 1);
   georeference->ok = true;
   for (int i = 0; i < 64; ++i) {
     const Eigen::Vector3d centre(20.0 * (i % 8) - 70.0, 20.0 * (i / 8) - 70.0, 60.0);
-    Station station;
+    prepare::input::Station station;
     station.name = std::to_string(i);
     station.cam_from_model = {Eigen::Quaterniond::Identity(), -centre};
     station.gps = geo::Geodetic{47.0, 8.0, 560.0};
@@ -31,7 +31,7 @@ void MakeFlight(double dome_m, double noise_m, std::vector<Station>* stations, G
 }
 
 bool Tells(double dome_m, double noise_m, double rtk_share = 0.0, bool placed = true) {
-  std::vector<Station> stations;
+  std::vector<prepare::input::Station> stations;
   Georeference georeference;
   MakeFlight(dome_m, noise_m, &stations, &georeference);
   georeference.ok = placed;
@@ -51,7 +51,7 @@ TEST(TagsTellTheShape, WhenABendIsClearOrTheTagsAreRtk) {
 }
 
 TEST(TagsTellTheShape, NotWithoutHeights) {
-  std::vector<Station> stations;
+  std::vector<prepare::input::Station> stations;
   Georeference georeference;
   MakeFlight(2.0, 0.1, &stations, &georeference);
   for (Eigen::Vector3d& residual : georeference.residual_m) residual.z() = std::numeric_limits<double>::quiet_NaN();

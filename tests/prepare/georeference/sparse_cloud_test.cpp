@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 std::vector<survey::SparsePoint> Ground(double z) {
@@ -64,4 +64,4 @@ TEST(SparseCloud, AglIsMeasuredToTheGroundBelow) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 using NameList = std::vector<std::string>;
@@ -55,4 +55,4 @@ TEST(FindPhotos, FoldersTellPhotosOfOneNameApart) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -5,7 +5,7 @@
 #include "core/base/errors.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ TEST(ScaleToPhotos, ModelsWithoutObservationsKeepTheirFolder) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

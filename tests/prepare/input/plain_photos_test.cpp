@@ -15,7 +15,7 @@
 #include "tests/support/raw_tiff.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -243,4 +243,4 @@ TEST(BandsOption, IsCheckedBeforeAnyPhoto) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -10,7 +10,7 @@
 
 #include "core/base/random.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 void PrintTo(const FeatureMatch& match, std::ostream* out) {
   *out << match.a << "-" << match.b;
@@ -177,4 +177,4 @@ TEST(MatchDescriptors, FindsEveryFeatureOfAShuffledPhoto) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

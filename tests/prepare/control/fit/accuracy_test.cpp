@@ -39,7 +39,7 @@ TEST(ControlAccuracy, StatedSigmasCoverTheErrors) {
                      .tags = trial % 3 != 0,
                      .seed = 500 + trial};
     MadeControl made = MakeControl(plan, threads);
-    const prepare::PlacedByControl placed = prepare::FitControl(made.Job(), threads);
+    const prepare::control::PlacedByControl placed = prepare::control::FitControl(made.Job(), threads);
     ASSERT_TRUE(placed.fit.adjusted);
     for (const survey::ControlPointFit& point : placed.fit.points) {
       if (point.use == ControlUse::kCheck) check.Add(point);

@@ -16,7 +16,7 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::control;
 
 base::ThreadPool& TwoThreads() {
   static base::ThreadPool threads(2);
@@ -33,15 +33,16 @@ void Bend(double k1_change, MadeControl* made) {
                                             .stations = made->stations,
                                             .image_of_station = made->image_of_station,
                                             .control = none});
-  const std::vector<BundlePhoto> before = bundle.bundle.photos;
+  const std::vector<prepare::bundle::BundlePhoto> before = bundle.bundle.photos;
   bundle.bundle.lenses[0].numbers[kK1] += k1_change;
-  for (BundlePhoto& photo : bundle.bundle.photos) {
+  for (prepare::bundle::BundlePhoto& photo : bundle.bundle.photos) {
     photo.gps = photo.centre;
     photo.gps_sigma = Eigen::Vector3d::Constant(3.0);
   }
   std::vector<uint32_t> tracks(bundle.n_ties);
   std::iota(tracks.begin(), tracks.end(), 0U);
-  ASSERT_TRUE(AdjustBundle(bundle.bundle, tracks, {.loss = 2.5, .gentle = true, .free_lens = false, .max_iterations = 60, .tolerance = 1e-9}, {}));
+  ASSERT_TRUE(prepare::bundle::AdjustBundle(bundle.bundle, tracks,
+                                            {.loss = 2.5, .gentle = true, .free_lens = false, .max_iterations = 60, .tolerance = 1e-9}, {}));
   UpdateModel(bundle, {}, before, true, made->model);
   for (size_t i = 0; i < made->stations.size(); ++i) made->stations[i].cam_from_model = made->model.images[i].cam_from_world;
 }
@@ -58,12 +59,12 @@ void Tag(double horizontal_m, double vertical_m, MadeControl* made) {
 
 // Of the model's cameras against the truth.
 double DomeOf(const MadeControl& made) {
-  std::vector<HeightDifference> differences;
+  std::vector<prepare::georeference::HeightDifference> differences;
   for (size_t i = 0; i < made.true_poses.size(); ++i) {
     const Eigen::Vector3d truth = made.true_poses[i].OriginInSource();
     differences.push_back({truth.head<2>(), made.model.images[i].cam_from_world.OriginInSource().z() - truth.z()});
   }
-  return FitDome(differences).height_m;
+  return prepare::georeference::FitDome(differences).height_m;
 }
 
 TagJob JobOf(MadeControl& made) {

@@ -9,7 +9,7 @@
 #include "core/base/json_text.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 survey::Survey ControlledSurvey() {
@@ -70,4 +70,4 @@ TEST(ControlReport, FilesOfAnEarlierRunAreRemoved) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -10,7 +10,7 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::control;
 
 const geo::Similarity3d kTruth = {
     3.5, Eigen::Quaterniond(Eigen::AngleAxisd(1.2, Eigen::Vector3d(0.2, 0.5, -0.8).normalized())), {100.0, -40.0, 12.0}};

@@ -12,7 +12,7 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::control;
 using survey::ControlUse;
 
 base::ThreadPool& Threads() {

@@ -26,7 +26,7 @@ void Transform(const geo::Similarity3d& b_from_a, survey::ColmapModel& model) {
 
 }  // namespace
 
-void Displace(prepare::ControlPoint& point, const Eigen::Vector3d& by_m) {
+void Displace(prepare::control::ControlPoint& point, const Eigen::Vector3d& by_m) {
   const bool has_height = std::isfinite(point.place.height_m);
   geo::Geodetic from = point.place;
   if (!has_height) from.height_m = kMadeOrigin.height_m;
@@ -37,11 +37,11 @@ void Displace(prepare::ControlPoint& point, const Eigen::Vector3d& by_m) {
 MadeControl MakeControl(const ControlPlan& plan, base::ThreadPool& threads) {
   MadeSurvey survey = MakeSurvey(plan.survey);
   const geo::EnuFrame frame(kMadeOrigin);
-  for (prepare::SeedPhoto& photo : survey.input.photos) {
+  for (prepare::poses::SeedPhoto& photo : survey.input.photos) {
     photo.gps = frame.GeodeticFromEnu(frame.EnuFromGeodetic(*photo.gps) + plan.tag_shift_m);
   }
   std::string reason;
-  auto seeded = prepare::SeedPoses(survey.input, threads, &reason);
+  auto seeded = prepare::poses::SeedPoses(survey.input, threads, &reason);
   if (!seeded) throw std::runtime_error(reason);
   MadeControl made;
   made.model = std::move(seeded->model);
@@ -56,7 +56,7 @@ MadeControl MakeControl(const ControlPlan& plan, base::ThreadPool& threads) {
     const survey::ColmapImage& image = made.model.images[i];
     made.true_poses.push_back(survey.cam_from_enu[image.id - 1]);
     cameras.push_back(&survey.cameras[image.camera_id - 1]);
-    prepare::Station station;
+    prepare::input::Station station;
     station.name = image.name;
     station.cam_from_model = image.cam_from_world;
     if (plan.tags) station.gps = survey.input.photos[image.id - 1].gps;
@@ -72,7 +72,7 @@ MadeControl MakeControl(const ControlPlan& plan, base::ThreadPool& threads) {
     // Control and check points alternate over the ground.
     const int k = i < plan.control ? 2 * i : 2 * (i - plan.control) + 1;
     const Eigen::Vector3d x = PlaceOfPoint(plan.survey, k % n, n, random);
-    prepare::ControlPoint point;
+    prepare::control::ControlPoint point;
     point.label = "T" + std::to_string(i + 1);
     point.line = i + 2;
     point.check = i >= plan.control;

@@ -29,13 +29,13 @@ struct ControlPlan {
 struct MadeControl {
   survey::ColmapModel model;
   survey::ColmapObservations observations;
-  std::vector<prepare::Station> stations;
+  std::vector<prepare::input::Station> stations;
   std::vector<size_t> image_of_station;
-  prepare::ControlPoints control;
+  prepare::control::ControlPoints control;
   std::vector<geo::Rigid3d> true_poses;  // of the model's images, likewise
   double true_focal_px = 0.0;
 
-  prepare::ControlJob Job() {
+  prepare::control::ControlJob Job() {
     return {.model = model, .observations = observations, .stations = stations, .image_of_station = image_of_station, .control = control};
   }
 };
@@ -44,6 +44,6 @@ inline const geo::Geodetic kMadeOrigin = {47.3, 8.5, 500.0};
 
 MadeControl MakeControl(const ControlPlan& plan, base::ThreadPool& threads);
 // Moves a point's coordinates by so many metres east, north and up.
-void Displace(prepare::ControlPoint& point, const Eigen::Vector3d& by_m);
+void Displace(prepare::control::ControlPoint& point, const Eigen::Vector3d& by_m);
 
 }  // namespace skyquilt::test

@@ -8,7 +8,7 @@
 #include "core/base/random.h"
 #include "core/survey/orientation.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 using Eigen::Vector3d;
@@ -20,7 +20,7 @@ const Eigen::Vector2i kPhotoSize(1600, 1200);
 struct Nadir {
   survey::ColmapModel model;
   survey::ColmapObservations no_ties;
-  std::vector<Station> stations;
+  std::vector<input::Station> stations;
   std::vector<size_t> images;
   ControlPoints control;
 
@@ -37,7 +37,7 @@ struct Nadir {
       image.camera_id = 1;
       image.name = "photo_" + std::to_string(i) + ".jpg";
       image.cam_from_world = {rotation, -(rotation * centre)};
-      Station station;
+      input::Station station;
       station.name = image.name;
       station.cam_from_model = image.cam_from_world;
       stations.push_back(station);
@@ -127,4 +127,4 @@ TEST(MarkReading, HasNothingToDecideWithoutTurnedPhotos) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -3,7 +3,7 @@
 #include "core/geo/crs.h"
 #include "tests/prepare/control/reading/control_reader_fixture.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 class ControlChecks : public ControlReader {
@@ -85,4 +85,4 @@ TEST_F(ControlChecks, PointsOnOneLineNeedAPlaceFromTags) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -1,6 +1,6 @@
 #include "tests/prepare/control/reading/control_reader_fixture.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 class ControlFaults : public ControlReader {
@@ -106,4 +106,4 @@ TEST_F(ControlFaults, OptionsThatCannotBeMeantAreUsageErrors) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

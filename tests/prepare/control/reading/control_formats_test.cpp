@@ -4,7 +4,7 @@
 #include "core/geo/utm.h"
 #include "tests/prepare/control/reading/control_reader_fixture.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 class ControlFormats : public ControlReader {
@@ -175,4 +175,4 @@ TEST_F(ControlFormats, GcpListsMayHaveOtherSeparatorsAndDecimalCommas) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

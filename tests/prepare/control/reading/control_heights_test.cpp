@@ -3,7 +3,7 @@
 #include "core/geo/geoid.h"
 #include "tests/prepare/control/reading/control_reader_fixture.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 class ControlHeights : public ControlReader {
@@ -73,4 +73,4 @@ TEST_F(ControlHeights, GuessedDatumsAreSaid) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -3,7 +3,7 @@
 #include "core/survey/orientation.h"
 #include "tests/prepare/control/reading/control_reader_fixture.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 namespace {
 
 using ControlMarks = ControlReader;
@@ -223,4 +223,4 @@ TEST_F(ControlMarks, OneOutsideAmongUprightOnesIsNamed) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

@@ -11,7 +11,7 @@
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::control {
 
 class ControlReader : public ::testing::Test {
  protected:
@@ -39,4 +39,4 @@ class ControlReader : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::control

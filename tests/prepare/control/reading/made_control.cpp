@@ -57,7 +57,7 @@ ControlTexts OpensfmControlFiles(const MadeControl& made) {
   for (const MadePoint& point : made.points) {
     std::string observations;
     for (const MadeMark& mark : point.marks) {
-      const prepare::PhotoSize& photo = made.photos[mark.photo];
+      const prepare::control::PhotoSize& photo = made.photos[mark.photo];
       const double unit = std::max(photo.width, photo.height);
       observations += fmt::format("{}\n    {{\"shot_id\": \"{}\", \"projection\": [{:.12f}, {:.12f}]}}", observations.empty() ? "" : ",", photo.name,
                                   (mark.pixel.x() - 0.5 * photo.width) / unit, (mark.pixel.y() - 0.5 * photo.height) / unit);
@@ -86,7 +86,7 @@ ControlTexts MetashapeControlFiles(const MadeControl& made, const std::string& d
   std::string table = "#Label,X/Easting,Y/Northing,Z/Altitude,Accuracy_(m)\n";
   std::string labels, marks, cameras, sensors;
   for (size_t i = 0; i < made.photos.size(); ++i) {
-    const prepare::PhotoSize& photo = made.photos[i];
+    const prepare::control::PhotoSize& photo = made.photos[i];
     sensors += fmt::format("<sensor id=\"{}\"><resolution width=\"{}\" height=\"{}\"/></sensor>\n", i, photo.width, photo.height);
     cameras += fmt::format("<camera id=\"{}\" sensor_id=\"{}\" label=\"{}\"/>\n", i, i, std::filesystem::path(photo.name).stem().string());
   }

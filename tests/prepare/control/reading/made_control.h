@@ -24,7 +24,7 @@ struct MadePoint {
 };
 
 struct MadeControl {
-  std::vector<prepare::PhotoSize> photos;
+  std::vector<prepare::control::PhotoSize> photos;
   std::vector<MadePoint> points;
 };
 

@@ -10,7 +10,7 @@
 #include "prepare/georeference/checks/flight_speed.h"
 #include "tests/support/not_finite.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 // Nadir photos on lines of 120 m length, 20 m apart, flown to and fro at 5 m/s and 50 m above ground. Times are as exact as wanted.
@@ -294,4 +294,4 @@ TEST(FlightChecks, NothingBreaksThem) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

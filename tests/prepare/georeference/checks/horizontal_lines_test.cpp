@@ -7,7 +7,7 @@
 
 #include "core/image/image.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Vector2d;
@@ -105,4 +105,4 @@ TEST(HorizontalLines, UnreadablePhotosAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -13,7 +13,7 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::georeference;
 using Urgency = Contradiction::Urgency;
 
 constexpr double kTrueFocal_px = 800.0;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 TEST(ShutterTable, KnowsRollingShutters) {
@@ -49,4 +49,4 @@ TEST(CameraName, HasTheMakeOnce) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -9,7 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/random.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using survey::DominantDirections;
@@ -106,4 +106,4 @@ TEST(Directions, APlaceHasTheYawOfItsCellIfMostLinesFollowIt) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -11,11 +11,11 @@
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
-PhotoFile GeoPhoto(const std::string& name, std::optional<geo::Geodetic> gps = {}) {
-  PhotoFile photo{.name = name, .width = 4, .height = 3, .tags = {}};
+input::PhotoFile GeoPhoto(const std::string& name, std::optional<geo::Geodetic> gps = {}) {
+  input::PhotoFile photo{.name = name, .width = 4, .height = 3, .tags = {}};
   photo.tags.gps = gps;
   return photo;
 }
@@ -43,7 +43,7 @@ class GeoTables : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  std::vector<PhotoFile> photos_ = {GeoPhoto("sub/DJI 0001.JPG"), GeoPhoto("b.jpg"), GeoPhoto("c.jpg")};
+  std::vector<input::PhotoFile> photos_ = {GeoPhoto("sub/DJI 0001.JPG"), GeoPhoto("b.jpg"), GeoPhoto("c.jpg")};
 };
 
 TEST_F(GeoTables, NamesMayBeWrittenInManyWays) {
@@ -94,7 +94,7 @@ TEST_F(GeoTables, RowsWithoutAFixCountForNothing) {
 }
 
 TEST_F(GeoTables, ExchangedAxesAreTakenTheOtherWayRoundWhereTagsProveIt) {
-  for (PhotoFile& photo : photos_) photo.tags.gps = geo::Geodetic{47.1001, 8.4001, 400.0};
+  for (input::PhotoFile& photo : photos_) photo.tags.gps = geo::Geodetic{47.1001, 8.4001, 400.0};
   const GeoTable table = Read("EPSG:4326\nb.jpg 47.1 8.4 400\nc.jpg 47.1 8.4001 400\n");
   EXPECT_TRUE(table.exchanged);
   EXPECT_NEAR(table.rows[0].position.latitude_deg, 47.1, 1e-9);
@@ -120,10 +120,10 @@ TEST_F(GeoTables, ExchangedAxesAreRecognisedByLatitudesBeyondThePole) {
 
 TEST_F(GeoTables, GoodAxesStay) {
   // Near the line where longitude and latitude are equal both ways are near the tags.
-  for (PhotoFile& photo : photos_) photo.tags.gps = geo::Geodetic{45.001, 45.0, 400.0};
+  for (input::PhotoFile& photo : photos_) photo.tags.gps = geo::Geodetic{45.001, 45.0, 400.0};
   EXPECT_FALSE(Read("EPSG:4326\nb.jpg 45.001 45.0 400\n").exchanged);
   // Tags that are far away in both ways.
-  for (PhotoFile& photo : photos_) photo.tags.gps = geo::Geodetic{-33.8, 151.2, 40.0};
+  for (input::PhotoFile& photo : photos_) photo.tags.gps = geo::Geodetic{-33.8, 151.2, 40.0};
   EXPECT_FALSE(Read("EPSG:4326\nb.jpg 8.4 47.1 400\n").exchanged);
 }
 
@@ -153,7 +153,7 @@ RC_GTEST_PROP(GeoTableProperty, PositionsReadBackTheSameInEveryDialect, ()) {
   const bool heading = *rc::gen::arbitrary<bool>(), latitude_first = heading && *rc::gen::arbitrary<bool>();
   const bool windows = *rc::gen::arbitrary<bool>(), extension = *rc::gen::arbitrary<bool>(), height = *rc::gen::arbitrary<bool>();
   const std::string end = windows ? "\r\n" : "\n", between(1, separator), folder = *rc::gen::element("", "D:\\my photos\\", "survey/");
-  std::vector<PhotoFile> photos;
+  std::vector<input::PhotoFile> photos;
   std::vector<geo::Geodetic> places;
   const auto number = [&](double value) {
     std::string text = fmt::format("{:.9f}", value);
@@ -189,4 +189,4 @@ RC_GTEST_PROP(GeoTableProperty, PositionsReadBackTheSameInEveryDialect, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

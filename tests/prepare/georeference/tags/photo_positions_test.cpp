@@ -10,7 +10,7 @@
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 constexpr const char* kMrkLine =
@@ -22,8 +22,8 @@ class PhotoPositions : public ::testing::Test {
     std::filesystem::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name) << text;
   }
-  static PhotoFile Photo(const std::string& name) {
-    PhotoFile photo{.name = name, .width = 4, .height = 3, .tags = {}};
+  static input::PhotoFile Photo(const std::string& name) {
+    input::PhotoFile photo{.name = name, .width = 4, .height = 3, .tags = {}};
     photo.tags.gps = geo::Geodetic{47.1001, 8.4001, 400.0};
     photo.tags.dop = 2.0;
     return photo;
@@ -40,7 +40,7 @@ TEST_F(PhotoPositions, GeoFileReplacesTagsInAnyCoordinateSystem) {
   const Eigen::Vector2d utm = geo::UtmFromGeodetic({47.1, 8.4, 0.0}, {32, true});
   Write("geo.txt", "WGS84 UTM 32N\r\nA.JPG " + std::to_string(utm.x()) + " " + std::to_string(utm.y()) + " 431.5 0 0 0 0.02 0.05 any label\r\n" +
                        "b.jpg " + std::to_string(utm.x()) + " " + std::to_string(utm.y()) + "\r\nmissing.jpg 450000 5200000 1\r\n");
-  std::vector<PhotoFile> photos = {Photo("sub/a.jpg"), Photo("b.jpg"), Photo("c.jpg")};
+  std::vector<input::PhotoFile> photos = {Photo("sub/a.jpg"), Photo("b.jpg"), Photo("c.jpg")};
   UsePositionFiles(folder_.path(), "", photos);
   EXPECT_NEAR(photos[0].tags.gps->latitude_deg, 47.1, 1e-8);
   EXPECT_NEAR(photos[0].tags.gps->longitude_deg, 8.4, 1e-8);
@@ -63,15 +63,15 @@ TEST_F(PhotoPositions, FaultsOfAGeoFileNameTheLine) {
   EXPECT_NE(GeoError("EPSG:4326\na.jpg 8 47\na.jpg 8 47\n").find("line 3: names a.jpg a second time"), std::string::npos);
   EXPECT_NE(GeoError("EPSG:4326\n").find("has no positions"), std::string::npos);
   Write("geo.txt", "EPSG:4326\nother.jpg 8.4 47.1 1\n");
-  std::vector<PhotoFile> photos = {Photo("a.jpg")};
+  std::vector<input::PhotoFile> photos = {Photo("a.jpg")};
   const std::string message = InputErrorOf([&] { UsePositionFiles(folder_.path(), "", photos); });
   EXPECT_NE(message.find("names none of the photos"), std::string::npos) << message;
 }
 
 TEST_F(PhotoPositions, MrkServesThePhotosOfItsFolderByNumber) {
   Write("flight/100_Timestamp.MRK", "7" + std::string(kMrkLine) + "8" + kMrkLine);
-  std::vector<PhotoFile> photos = {Photo("flight/DJI_0007.JPG"), Photo("flight/DJI_20230101120000_0008_V.JPG"), Photo("flight/DJI_0009.JPG"),
-                                   Photo("DJI_0007.JPG")};
+  std::vector<input::PhotoFile> photos = {Photo("flight/DJI_0007.JPG"), Photo("flight/DJI_20230101120000_0008_V.JPG"), Photo("flight/DJI_0009.JPG"),
+                                          Photo("DJI_0007.JPG")};
   UsePositionFiles(folder_.path(), "", photos);
   for (size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(photos[i].tags.gps->latitude_deg, 47.1);
@@ -89,7 +89,7 @@ TEST_F(PhotoPositions, MrkOfAnotherFlightOrWithRepeatedNumbersIsNotUsed) {
   Write("one/b.MRK", "7" + std::string(kMrkLine));
   Write("two/a.MRK", "7" + std::string(kMrkLine));
   Write("three/a.MRK", "not a log\n");
-  std::vector<PhotoFile> photos = {Photo("one/DJI_0007.JPG"), Photo("two/DJI_0007.JPG"), Photo("three/DJI_0007.JPG")};
+  std::vector<input::PhotoFile> photos = {Photo("one/DJI_0007.JPG"), Photo("two/DJI_0007.JPG"), Photo("three/DJI_0007.JPG")};
   photos[1].tags.gps->latitude_deg = 47.3;
   const double before[] = {47.1001, 47.3, 47.1001};
   UsePositionFiles(folder_.path(), "", photos);
@@ -103,4 +103,4 @@ TEST_F(PhotoPositions, FaultsOfAnMrkNameTheLine) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

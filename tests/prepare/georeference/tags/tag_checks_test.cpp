@@ -11,13 +11,13 @@
 #include "tests/prepare/georeference/made_stations.h"
 #include "tests/support/not_finite.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Vector3d;
 
-std::vector<Station> WithHeights(const std::vector<double>& height_m, std::optional<double> relative_altitude_m = {}) {
-  std::vector<Station> stations(height_m.size());
+std::vector<input::Station> WithHeights(const std::vector<double>& height_m, std::optional<double> relative_altitude_m = {}) {
+  std::vector<input::Station> stations(height_m.size());
   for (size_t i = 0; i < stations.size(); ++i) {
     stations[i].gps = geo::Geodetic{47.0 + 1e-4 * static_cast<double>(i), 8.0, height_m[i]};
     stations[i].relative_altitude_m = relative_altitude_m;
@@ -26,15 +26,15 @@ std::vector<Station> WithHeights(const std::vector<double>& height_m, std::optio
 }
 
 // Photos on a lawnmower around `origin` with tags that have the noise of a receiver.
-std::vector<Station> Tagged(const geo::Geodetic& origin, uint64_t seed) {
+std::vector<input::Station> Tagged(const geo::Geodetic& origin, uint64_t seed) {
   base::Random random(seed);
-  std::vector<Station> stations = test::LawnmowerStations(40, test::RandomFrame(random));
+  std::vector<input::Station> stations = test::LawnmowerStations(40, test::RandomFrame(random));
   const geo::EnuFrame frame(origin);
   for (int i = 0; i < 40; ++i) {
-    Station& station = stations[static_cast<size_t>(i)];
+    input::Station& station = stations[static_cast<size_t>(i)];
     station.name = "photo_" + std::to_string(i) + ".jpg";
     station.gps = frame.GeodeticFromEnu(test::OnLawnmower(i, 40) + Vector3d{random.Normal(), random.Normal(), random.Normal()});
-    station.up_in_cam = UpInCamera(-90.0, 0.0);
+    station.up_in_cam = input::UpInCamera(-90.0, 0.0);
   }
   return stations;
 }
@@ -56,22 +56,22 @@ TEST(JudgeHeights, TellsTaggedFromRelativeAndUnknown) {
   EXPECT_EQ(JudgeHeights(WithHeights({0.0, 0.0, 0.0}, 60.0)), HeightTags::kRelative);
   EXPECT_EQ(JudgeHeights(WithHeights({kNan, kNan, kNan}, 0.0)), HeightTags::kUnknown);
   EXPECT_EQ(JudgeHeights(WithHeights({400.0, 401.0, 402.0}, 60.0)), HeightTags::kTagged);
-  std::vector<Station> half = WithHeights({kNan, kNan, kNan, kNan}, 60.0);
+  std::vector<input::Station> half = WithHeights({kNan, kNan, kNan, kNan}, 60.0);
   half[0].relative_altitude_m.reset();
   half[1].relative_altitude_m.reset();
   EXPECT_EQ(JudgeHeights(half), HeightTags::kUnknown);
   EXPECT_EQ(JudgeHeights({}), HeightTags::kUnknown);
 }
 
-std::vector<Station> AtOneSpot(const std::vector<double>& height_m, std::optional<double> relative_altitude_m = {}) {
-  std::vector<Station> stations = WithHeights(height_m, relative_altitude_m);
-  for (Station& station : stations) station.gps->latitude_deg = 47.0;
+std::vector<input::Station> AtOneSpot(const std::vector<double>& height_m, std::optional<double> relative_altitude_m = {}) {
+  std::vector<input::Station> stations = WithHeights(height_m, relative_altitude_m);
+  for (input::Station& station : stations) station.gps->latitude_deg = 47.0;
   return stations;
 }
 
 TEST(AllTagsEqual, AllowsAMetreInAllDirections) {
   EXPECT_FALSE(AllTagsEqual(WithHeights({0.0, 100.0, kNan, 0.0})));
-  std::vector<Station> stations = AtOneSpot({400.0, 400.6, kNan, 399.7});
+  std::vector<input::Station> stations = AtOneSpot({400.0, 400.6, kNan, 399.7});
   EXPECT_TRUE(AllTagsEqual(stations));
   stations[1].gps->longitude_deg += 1e-6;  // 8 cm
   stations[2].gps.reset();
@@ -90,17 +90,17 @@ TEST(AllTagsEqual, TagsAboveOneAnotherDiffer) {
   EXPECT_FALSE(AllTagsEqual(AtOneSpot({400.0, 400.0, 400.0, 402.0, 402.0, 402.0, 404.0, 404.0, 404.0})));
   EXPECT_TRUE(AllTagsEqual(AtOneSpot({400.0, 400.0, 400.0})));
   // Heights above take-off count where tags have no other; not where these say nothing.
-  std::vector<Station> relative = AtOneSpot({kNan, kNan, kNan}, 10.0);
+  std::vector<input::Station> relative = AtOneSpot({kNan, kNan, kNan}, 10.0);
   EXPECT_TRUE(AllTagsEqual(relative));
   relative[2].relative_altitude_m = 30.0;
   EXPECT_FALSE(AllTagsEqual(relative));
-  for (Station& station : relative) station.gps->height_m = 0.0;
+  for (input::Station& station : relative) station.gps->height_m = 0.0;
   EXPECT_FALSE(AllTagsEqual(relative));
   EXPECT_TRUE(AllTagsEqual(AtOneSpot({kNan, kNan, kNan})));
 }
 
 TEST(PossibleCoordinateFaults, RepairTheTagsAndStayOnEarth) {
-  const std::vector<Station> stations = WithHeights({1.0, 2.0});
+  const std::vector<input::Station> stations = WithHeights({1.0, 2.0});
   const std::vector<CoordinateFault> faults = PossibleCoordinateFaults(stations);
   ASSERT_EQ(faults.size(), 2U);
   const geo::Geodetic expected[] = {{8.0, 47.0, 1.0}, {47.0, -8.0, 1.0}};
@@ -114,8 +114,8 @@ TEST(PossibleCoordinateFaults, RepairTheTagsAndStayOnEarth) {
     EXPECT_EQ(faults[i].repaired[0].gps->longitude_deg, expected[i].longitude_deg);
     EXPECT_EQ(faults[i].repaired[0].gps->height_m, expected[i].height_m);
   }
-  std::vector<Station> far_east = stations;
-  for (Station& station : far_east) station.gps->longitude_deg = 151.0;  // no latitude
+  std::vector<input::Station> far_east = stations;
+  for (input::Station& station : far_east) station.gps->longitude_deg = 151.0;  // no latitude
   far_east[0].gps.reset();
   const std::vector<CoordinateFault> possible = PossibleCoordinateFaults(far_east);
   ASSERT_EQ(possible.size(), 1U);
@@ -139,8 +139,8 @@ TEST(PlaceOnEarth, NamesCoordinatesWrittenWrongly) {
   for (const geo::Geodetic& origin : {geo::Geodetic{37.0, -60.0, 400.0}, geo::Geodetic{10.0, 20.0, 400.0}}) {
     EXPECT_TRUE(PlaceOnEarth(Tagged(origin, 1), {}, {}).problems.empty());
     for (const auto& [code, apply] : faults) {
-      std::vector<Station> stations = Tagged(origin, 2);
-      for (Station& station : stations) station.gps = apply(*station.gps);
+      std::vector<input::Station> stations = Tagged(origin, 2);
+      for (input::Station& station : stations) station.gps = apply(*station.gps);
       const Georeference result = PlaceOnEarth(stations, {}, {});
       EXPECT_FALSE(result.ok) << code;
       ASSERT_EQ(result.problems.size(), 1U) << code;
@@ -152,21 +152,21 @@ TEST(PlaceOnEarth, NamesCoordinatesWrittenWrongly) {
 }
 
 TEST(PlaceOnEarth, SaysWhyThereIsNoPlace) {
-  std::vector<Station> stations = Tagged({47.0, 8.0, 400.0}, 3);
+  std::vector<input::Station> stations = Tagged({47.0, 8.0, 400.0}, 3);
   const geo::Geodetic first = *stations[0].gps;
-  for (Station& station : stations) station.gps = first;
+  for (input::Station& station : stations) station.gps = first;
   const Georeference equal = PlaceOnEarth(stations, {}, {});
   EXPECT_FALSE(equal.ok);
   EXPECT_TRUE(Has(equal, "equal_tags"));
   for (size_t i = 3; i < stations.size(); ++i) stations[i].gps.reset();
   EXPECT_TRUE(Has(PlaceOnEarth(stations, {}, {}), "too_few_tags"));
-  for (Station& station : stations) station.gps.reset();
+  for (input::Station& station : stations) station.gps.reset();
   EXPECT_TRUE(Has(PlaceOnEarth(stations, {}, {}), "no_gps"));
   EXPECT_TRUE(Has(PlaceOnEarth({}, {}, {}), "no_gps"));
 
   base::Random random(4);
   stations = Tagged({47.0, 8.0, 400.0}, 5);
-  for (Station& station : stations) {
+  for (input::Station& station : stations) {
     station.gps->latitude_deg += 0.1 * random.Normal();
     station.gps->longitude_deg += 0.1 * random.Normal();
   }
@@ -177,16 +177,16 @@ TEST(PlaceOnEarth, SaysWhyThereIsNoPlace) {
 }
 
 // Photos of a facade from twenty heights 2 m apart, level cameras, within `reach_m` of a vertical line. The tags have noise of `noise_m`.
-std::vector<Station> Column(double reach_m, double noise_m, uint64_t seed) {
+std::vector<input::Station> Column(double reach_m, double noise_m, uint64_t seed) {
   base::Random random(seed);
   const geo::Similarity3d model_from_enu = test::RandomFrame(random);
   const geo::EnuFrame frame({47.0, 8.0, 400.0});
-  std::vector<Station> stations;
+  std::vector<input::Station> stations;
   for (int i = 0; i < 20; ++i) {
     const Vector3d centre(i % 4 < 2 ? reach_m : -reach_m, i % 2 == 0 ? reach_m : -reach_m, 10.0 + 2.0 * i);
     stations.push_back(test::StationAt(centre, {.yaw_deg = 30.0, .pitch_deg = 0.0}, model_from_enu));
     stations.back().name = "facade_" + std::to_string(i) + ".jpg";
-    stations.back().up_in_cam = UpInCamera(0.0, 0.0);
+    stations.back().up_in_cam = input::UpInCamera(0.0, 0.0);
     const double east = noise_m * random.Normal(), north = noise_m * random.Normal(), up = noise_m * random.Normal();
     stations.back().gps = frame.GeodeticFromEnu(centre + Vector3d(east, north, up));
   }
@@ -194,7 +194,7 @@ std::vector<Station> Column(double reach_m, double noise_m, uint64_t seed) {
 }
 
 TEST(PlaceOnEarth, PhotosAboveOneAnotherLeaveNorthOpen) {
-  const auto expect_column = [](const std::vector<Station>& stations, const char* what) {
+  const auto expect_column = [](const std::vector<input::Station>& stations, const char* what) {
     const Georeference result = PlaceOnEarth(stations, {}, {});
     EXPECT_FALSE(result.ok) << what;
     ASSERT_EQ(result.problems.size(), 1U) << what;
@@ -204,16 +204,16 @@ TEST(PlaceOnEarth, PhotosAboveOneAnotherLeaveNorthOpen) {
   };
   expect_column(Column(0.1, 0.1, 11), "tags within a metre of a line");
   expect_column(Column(0.1, 1.0, 12), "tags with the noise of a receiver");
-  std::vector<Station> stations = Column(0.1, 0.1, 13);
-  for (Station& station : stations) station.gps->height_m = kNan;
+  std::vector<input::Station> stations = Column(0.1, 0.1, 13);
+  for (input::Station& station : stations) station.gps->height_m = kNan;
   expect_column(stations, "tags without heights");
   for (size_t i = 0; i < stations.size(); ++i) stations[i].relative_altitude_m = 2.0 * static_cast<double>(i);
   expect_column(stations, "heights above take-off");
 }
 
 TEST(PlaceOnEarth, AWallThatIsTakenForTheGroundDoesNotHideAColumn) {
-  std::vector<Station> stations = Column(0.1, 0.1, 18);
-  for (Station& station : stations) station.up_in_cam.reset();
+  std::vector<input::Station> stations = Column(0.1, 0.1, 18);
+  for (input::Station& station : stations) station.up_in_cam.reset();
   base::Random random(18), place(19);
   const geo::Similarity3d model_from_enu = test::RandomFrame(random);
   std::vector<Vector3d> wall;
@@ -235,10 +235,11 @@ TEST(PlaceOnEarth, AColumnWhoseTagsAreMoreExactThanItsWidthHasAPlace) {
 }
 
 TEST(PlaceOnEarth, APositionThatStandsStillWhileTheBarometerGoesOnIsNoColumn) {
-  std::vector<Station> stations = Tagged({47.0, 8.0, 400.0}, 15);
+  std::vector<input::Station> stations = Tagged({47.0, 8.0, 400.0}, 15);
   base::Random random(16);
   const geo::Geodetic first = *stations[0].gps;
-  for (Station& station : stations) station.gps = geo::Geodetic{first.latitude_deg, first.longitude_deg, first.height_m + 3.0 * random.Normal()};
+  for (input::Station& station : stations)
+    station.gps = geo::Geodetic{first.latitude_deg, first.longitude_deg, first.height_m + 3.0 * random.Normal()};
   const Georeference result = PlaceOnEarth(stations, {}, {});
   EXPECT_FALSE(result.ok);
   ASSERT_EQ(result.problems.size(), 1U);
@@ -249,34 +250,34 @@ TEST(PlaceOnEarth, APositionThatStandsStillWhileTheBarometerGoesOnIsNoColumn) {
   EXPECT_FALSE(line.ok);
   EXPECT_TRUE(Has(line, "equal_tags"));
   // Tags with heights that all but agree are those of one place.
-  std::vector<Station> hovering = Column(0.1, 0.1, 17);
-  for (Station& station : hovering) station.gps->height_m = 400.0 + 0.1 * random.Normal();
+  std::vector<input::Station> hovering = Column(0.1, 0.1, 17);
+  for (input::Station& station : hovering) station.gps->height_m = 400.0 + 0.1 * random.Normal();
   EXPECT_TRUE(Has(PlaceOnEarth(hovering, {}, {}), "equal_tags"));
 }
 
 TEST(PlaceOnEarth, NamesAStraightLineAndMissingHeights) {
-  std::vector<Station> stations = Tagged({47.0, 8.0, 400.0}, 6);
-  const std::vector<Station> line(stations.begin(), stations.begin() + test::kLine);
+  std::vector<input::Station> stations = Tagged({47.0, 8.0, 400.0}, 6);
+  const std::vector<input::Station> line(stations.begin(), stations.begin() + test::kLine);
   const Georeference on_line = PlaceOnEarth(line, {}, {});
   EXPECT_TRUE(on_line.ok);
   EXPECT_TRUE(Has(on_line, "one_line"));
 
-  for (Station& station : stations) station.gps->height_m = 0.0;
+  for (input::Station& station : stations) station.gps->height_m = 0.0;
   const Georeference zero = PlaceOnEarth(stations, {}, {});
   EXPECT_TRUE(zero.ok);
   EXPECT_TRUE(Has(zero, "no_heights"));
   EXPECT_TRUE(std::isnan(zero.fit.accuracy.vertical_m));
   EXPECT_LT(zero.fit.accuracy.tilt_deg, 0.6);
-  for (const Station& station : stations) EXPECT_NEAR((zero.enu_from_model * station.cam_from_model.OriginInSource()).z(), 0.0, 2.0);
+  for (const input::Station& station : stations) EXPECT_NEAR((zero.enu_from_model * station.cam_from_model.OriginInSource()).z(), 0.0, 2.0);
 
-  for (Station& station : stations) station.relative_altitude_m = 60.0;
+  for (input::Station& station : stations) station.relative_altitude_m = 60.0;
   const Georeference relative = PlaceOnEarth(stations, {}, {});
   EXPECT_TRUE(Has(relative, "no_heights"));
-  for (const Station& station : stations) EXPECT_NEAR((relative.enu_from_model * station.cam_from_model.OriginInSource()).z(), 60.0, 2.0);
+  for (const input::Station& station : stations) EXPECT_NEAR((relative.enu_from_model * station.cam_from_model.OriginInSource()).z(), 60.0, 2.0);
 }
 
 TEST(PlaceOnEarth, SaysWhenFewTagsAgree) {
-  std::vector<Station> stations = Tagged({47.0, 8.0, 400.0}, 7);
+  std::vector<input::Station> stations = Tagged({47.0, 8.0, 400.0}, 7);
   base::Random random(8);
   for (size_t i = 0; i < stations.size(); ++i) {
     if (i % 5 >= 2) stations[i].gps->latitude_deg += random.Uniform(5e-4, 5e-3) * (i % 2 == 0 ? 1.0 : -1.0);
@@ -289,7 +290,7 @@ TEST(PlaceOnEarth, SaysWhenFewTagsAgree) {
 }
 
 TEST(CoordinateFaults, NameTheFileThatThePositionsComeFrom) {
-  std::vector<Station> stations = WithHeights({400.0, 401.0, 402.0});
+  std::vector<input::Station> stations = WithHeights({400.0, 401.0, 402.0});
   const std::vector<CoordinateFault> of_tags = PossibleCoordinateFaults(stations);
   ASSERT_FALSE(of_tags.empty());
   EXPECT_NE(of_tags[0].problem.advice.find("exiftool"), std::string::npos);
@@ -301,4 +302,4 @@ TEST(CoordinateFaults, NameTheFileThatThePositionsComeFrom) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

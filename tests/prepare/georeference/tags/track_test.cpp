@@ -6,13 +6,13 @@
 
 #include "tests/prepare/georeference/made_stations.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 using Eigen::Vector3d;
 
-Station At(const Vector3d& position, std::optional<double> time_s) {
-  Station station = test::StationAt(position, {}, {});
+input::Station At(const Vector3d& position, std::optional<double> time_s) {
+  input::Station station = test::StationAt(position, {}, {});
   station.time_s = time_s;
   return station;
 }
@@ -24,8 +24,8 @@ void ExpectAt(const TrackPoint& point, const Vector3d& position, const Vector3d&
 
 TEST(Track, IsStraightBetweenPhotosAndBeyondTheEnds) {
   // Not in the order of time.
-  const std::vector<Station> stations = {At({30.0, 0.0, 5.0}, 14.0), At({0.0, 0.0, 5.0}, 10.0), At({10.0, 0.0, 5.0}, 12.0),
-                                         At({30.0, 8.0, 5.0}, 16.0)};
+  const std::vector<input::Station> stations = {At({30.0, 0.0, 5.0}, 14.0), At({0.0, 0.0, 5.0}, 10.0), At({10.0, 0.0, 5.0}, 12.0),
+                                                At({30.0, 8.0, 5.0}, 16.0)};
   const Track track(stations, {0, 0, 0, 0});
   EXPECT_EQ(track.order(), (std::vector<size_t>{1, 2, 0, 3}));
   EXPECT_TRUE(track.timed());
@@ -40,7 +40,8 @@ TEST(Track, IsStraightBetweenPhotosAndBeyondTheEnds) {
 }
 
 TEST(Track, DoesNotRunFromOneFlightToTheNext) {
-  const std::vector<Station> stations = {At({0.0, 0.0, 0.0}, 0.0), At({2.0, 0.0, 0.0}, 1.0), At({100.0, 0.0, 0.0}, 2.0), At({100.0, 3.0, 0.0}, 3.0)};
+  const std::vector<input::Station> stations = {At({0.0, 0.0, 0.0}, 0.0), At({2.0, 0.0, 0.0}, 1.0), At({100.0, 0.0, 0.0}, 2.0),
+                                                At({100.0, 3.0, 0.0}, 3.0)};
   const Track track(stations, {0, 0, 1, 1});
   ExpectAt(track.Before(2, 0.5), {100.0, -1.5, 0.0}, {0.0, 3.0, 0.0});
   ExpectAt(track.Before(1, -0.5), {3.0, 0.0, 0.0}, {2.0, 0.0, 0.0});
@@ -48,15 +49,16 @@ TEST(Track, DoesNotRunFromOneFlightToTheNext) {
 }
 
 TEST(Track, PhotosOfTheSameSecondStayApart) {
-  const std::vector<Station> stations = {At({0.0, 0.0, 0.0}, 0.0), At({4.0, 0.0, 0.0}, 2.0), At({5.0, 0.0, 0.0}, 2.0), At({8.0, 0.0, 0.0}, 4.0)};
+  const std::vector<input::Station> stations = {At({0.0, 0.0, 0.0}, 0.0), At({4.0, 0.0, 0.0}, 2.0), At({5.0, 0.0, 0.0}, 2.0),
+                                                At({8.0, 0.0, 0.0}, 4.0)};
   const Track track(stations, {0, 0, 0, 0});
   ExpectAt(track.Before(1, 0.0), {4.0, 0.0, 0.0}, {2.0, 0.0, 0.0});
   ExpectAt(track.Before(2, 0.0), {5.0, 0.0, 0.0}, {2.0, 0.0, 0.0});
   EXPECT_EQ(track.Phase(1), 0.0);
   EXPECT_EQ(track.Phase(2), 0.0);
 
-  std::vector<Station> same = stations;
-  for (Station& station : same) station.time_s = 7.0;
+  std::vector<input::Station> same = stations;
+  for (input::Station& station : same) station.time_s = 7.0;
   const Track still(same, {0, 0, 0, 0});
   EXPECT_FALSE(still.timed());
   ExpectAt(still.Before(3, 1.0), {8.0, 0.0, 0.0}, Vector3d::Zero());
@@ -64,7 +66,7 @@ TEST(Track, PhotosOfTheSameSecondStayApart) {
 }
 
 TEST(Track, StationsWithoutTimeDoNotMove) {
-  std::vector<Station> stations = {At({0.0, 0.0, 0.0}, 0.0), At({9.0, 9.0, 9.0}, std::nullopt), At({3.0, 0.0, 0.0}, 3.0)};
+  std::vector<input::Station> stations = {At({0.0, 0.0, 0.0}, 0.0), At({9.0, 9.0, 9.0}, std::nullopt), At({3.0, 0.0, 0.0}, 3.0)};
   const Track track(stations, {0, 0, 0});
   EXPECT_FALSE(track.timed());  // two of three have a time
   EXPECT_EQ(track.order(), (std::vector<size_t>{0, 2, 1}));
@@ -72,7 +74,7 @@ TEST(Track, StationsWithoutTimeDoNotMove) {
   ExpectAt(track.Before(2, 1.0), {2.0, 0.0, 0.0}, {1.0, 0.0, 0.0});
   EXPECT_EQ(track.Phase(1), 0.0);
 
-  for (Station& station : stations) station.time_s.reset();
+  for (input::Station& station : stations) station.time_s.reset();
   const Track by_name(stations, {0, 0, 0});
   EXPECT_EQ(by_name.order(), (std::vector<size_t>{0, 1, 2}));
   for (size_t i = 0; i < 3; ++i) EXPECT_EQ(by_name.Phase(i), 0.5 * static_cast<double>(i) - 0.5);
@@ -81,7 +83,7 @@ TEST(Track, StationsWithoutTimeDoNotMove) {
 }
 
 TEST(Track, AHoveringCameraTellsNoLag) {
-  std::vector<Station> stations;
+  std::vector<input::Station> stations;
   stations.reserve(10);
   for (int i = 0; i < 10; ++i) stations.push_back(At({i < 7 ? 0.0 : i, 0.0, 0.0}, i));
   EXPECT_FALSE(Track(stations, std::vector<int>(10, 0)).timed());
@@ -90,4 +92,4 @@ TEST(Track, AHoveringCameraTellsNoLag) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -7,17 +7,17 @@
 #include "core/base/random.h"
 #include "core/survey/tagged_heights.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::georeference {
 namespace {
 
 constexpr double kGap_s = 900.0;
 
 // A flight 45 m above take-off, which is at `take_off_m`; noise of a receiver and a barometer.
-std::vector<PhotoFile> HeightFlight(int n, double take_off_m, double gps_sigma_m = 1.5) {
+std::vector<input::PhotoFile> HeightFlight(int n, double take_off_m, double gps_sigma_m = 1.5) {
   base::Random random(3);
-  std::vector<PhotoFile> photos;
+  std::vector<input::PhotoFile> photos;
   for (int i = 0; i < n; ++i) {
-    PhotoFile photo{.name = "DJI_" + std::to_string(1000 + i) + ".JPG", .width = 4, .height = 3, .tags = {}};
+    input::PhotoFile photo{.name = "DJI_" + std::to_string(1000 + i) + ".JPG", .width = 4, .height = 3, .tags = {}};
     const double of_gps = gps_sigma_m * random.Normal(), of_barometer = 0.2 * random.Normal();
     photo.tags.gps = geo::Geodetic{47.0 + 1e-4 * i, 8.0, take_off_m + 45.0 + of_gps};
     photo.tags.absolute_altitude_m = photo.tags.gps->height_m;
@@ -31,45 +31,45 @@ std::vector<PhotoFile> HeightFlight(int n, double take_off_m, double gps_sigma_m
   return photos;
 }
 
-void ZeroAltitude(PhotoFile& photo) {
+void ZeroAltitude(input::PhotoFile& photo) {
   photo.tags.gps->height_m = 0.0;
   if (photo.tags.absolute_altitude_m) photo.tags.absolute_altitude_m = 0.0;
 }
 
-std::vector<double> HeightsOf(const std::vector<PhotoFile>& photos) {
+std::vector<double> HeightsOf(const std::vector<input::PhotoFile>& photos) {
   std::vector<double> heights;
-  for (const PhotoFile& photo : photos) heights.push_back(photo.tags.gps->height_m);
+  for (const input::PhotoFile& photo : photos) heights.push_back(photo.tags.gps->height_m);
   return heights;
 }
 
 TEST(UnfilledTags, AltitudesOfZeroComeFromRelativeAltitude) {
-  std::vector<PhotoFile> photos = HeightFlight(28, 456.0);
+  std::vector<input::PhotoFile> photos = HeightFlight(28, 456.0);
   for (size_t i = 0; i < 9; ++i) ZeroAltitude(photos[3 * i]);
   const UnfilledTags found = ClearUnfilledTags(kGap_s, photos);
   EXPECT_EQ(found.n_altitudes, 9U);
   EXPECT_EQ(found.n_filled, 9U);
-  for (const PhotoFile& photo : photos) EXPECT_NEAR(photo.tags.gps->height_m, 501.0, 6.0) << photo.name;
+  for (const input::PhotoFile& photo : photos) EXPECT_NEAR(photo.tags.gps->height_m, 501.0, 6.0) << photo.name;
   EXPECT_NEAR(photos[0].tags.gps->height_m, 501.0, 1.5);
   EXPECT_NE(found.Describe().find("altitude (9)"), std::string::npos) << found.Describe();
   // What the heights are measured from is known as before.
   std::vector<survey::PhotoTags> tags;
-  for (const PhotoFile& photo : photos) tags.push_back(photo.tags);
+  for (const input::PhotoFile& photo : photos) tags.push_back(photo.tags);
   EXPECT_EQ(survey::JudgeTaggedHeights(tags), survey::TaggedHeights::kEgm96);
 }
 
 TEST(UnfilledTags, MostAltitudesMayBeZeroOrMissing) {
-  std::vector<PhotoFile> photos = HeightFlight(20, 456.0);
+  std::vector<input::PhotoFile> photos = HeightFlight(20, 456.0);
   for (size_t i = 4; i < 20; ++i) ZeroAltitude(photos[i]);
   photos[19].tags.gps->height_m = std::nan("");
   const UnfilledTags found = ClearUnfilledTags(kGap_s, photos);
   EXPECT_EQ(found.n_altitudes, 15U);
   EXPECT_EQ(found.n_filled, 16U);
-  for (const PhotoFile& photo : photos) EXPECT_NEAR(photo.tags.gps->height_m, 501.0, 6.0);
+  for (const input::PhotoFile& photo : photos) EXPECT_NEAR(photo.tags.gps->height_m, 501.0, 6.0);
 }
 
 TEST(UnfilledTags, WithoutRelativeAltitudeThereIsNoHeight) {
-  std::vector<PhotoFile> photos = HeightFlight(12, 456.0);
-  for (PhotoFile& photo : photos) photo.tags.relative_altitude_m.reset();
+  std::vector<input::PhotoFile> photos = HeightFlight(12, 456.0);
+  for (input::PhotoFile& photo : photos) photo.tags.relative_altitude_m.reset();
   ZeroAltitude(photos[5]);
   const UnfilledTags found = ClearUnfilledTags(kGap_s, photos);
   EXPECT_EQ(found.n_altitudes, 1U);
@@ -79,8 +79,8 @@ TEST(UnfilledTags, WithoutRelativeAltitudeThereIsNoHeight) {
 }
 
 TEST(UnfilledTags, EachFlightHasItsOwnTakeOff) {
-  std::vector<PhotoFile> photos = HeightFlight(12, 456.0);
-  for (PhotoFile photo : HeightFlight(12, 300.0)) {
+  std::vector<input::PhotoFile> photos = HeightFlight(12, 456.0);
+  for (input::PhotoFile photo : HeightFlight(12, 300.0)) {
     *photo.tags.capture_time_s += 5000.0;
     photo.name = "later_" + photo.name;
     photos.push_back(photo);
@@ -93,8 +93,8 @@ TEST(UnfilledTags, EachFlightHasItsOwnTakeOff) {
 }
 
 TEST(UnfilledTags, ABarometersHeightIsNotAsAccurateAsRtk) {
-  std::vector<PhotoFile> photos = HeightFlight(12, 456.0, 0.02);
-  for (PhotoFile& photo : photos) {
+  std::vector<input::PhotoFile> photos = HeightFlight(12, 456.0, 0.02);
+  for (input::PhotoFile& photo : photos) {
     photo.tags.rtk = true;
     photo.tags.vertical_accuracy_m = 0.03;
   }
@@ -110,7 +110,7 @@ TEST(UnfilledTags, SurveysAtSeaLevelStayAsTheyAre) {
   for (const bool relative : {false, true}) {
     for (const bool whole : {false, true}) {
       for (const double take_off_m : {-45.0, -43.0, -47.0}) {
-        std::vector<PhotoFile> photos = HeightFlight(30, take_off_m);
+        std::vector<input::PhotoFile> photos = HeightFlight(30, take_off_m);
         for (size_t i = 0; i < photos.size(); ++i) {
           double& height_m = photos[i].tags.gps->height_m;
           if (whole) height_m = std::round(height_m);
@@ -127,25 +127,26 @@ TEST(UnfilledTags, SurveysAtSeaLevelStayAsTheyAre) {
 }
 
 TEST(UnfilledTags, AllAltitudesOfZeroStayAsTheyAre) {
-  std::vector<PhotoFile> photos = HeightFlight(10, 456.0);
-  for (PhotoFile& photo : photos) ZeroAltitude(photo);
+  std::vector<input::PhotoFile> photos = HeightFlight(10, 456.0);
+  for (input::PhotoFile& photo : photos) ZeroAltitude(photo);
   EXPECT_FALSE(ClearUnfilledTags(kGap_s, photos).Any());
-  for (PhotoFile& photo : photos) photo.tags.relative_altitude_m.reset();
+  for (input::PhotoFile& photo : photos) photo.tags.relative_altitude_m.reset();
   EXPECT_FALSE(ClearUnfilledTags(kGap_s, photos).Any());
   EXPECT_EQ(HeightsOf(photos), std::vector<double>(10, 0.0));
 }
 
 TEST(UnfilledTags, GoodTagsStayToTheBit) {
-  std::vector<PhotoFile> photos = HeightFlight(28, 456.0);
+  std::vector<input::PhotoFile> photos = HeightFlight(28, 456.0);
   const std::vector<double> before = HeightsOf(photos);
   EXPECT_FALSE(ClearUnfilledTags(kGap_s, photos).Any());
   EXPECT_EQ(HeightsOf(photos), before);
-  for (const PhotoFile& photo : photos) EXPECT_TRUE(photo.tags.relative_altitude_m && photo.tags.gimbal_pitch_deg && !photo.tags.vertical_accuracy_m);
+  for (const input::PhotoFile& photo : photos)
+    EXPECT_TRUE(photo.tags.relative_altitude_m && photo.tags.gimbal_pitch_deg && !photo.tags.vertical_accuracy_m);
 }
 
 TEST(UnfilledTags, RelativeAltitudesOfZeroAreMissing) {
-  std::vector<PhotoFile> photos = HeightFlight(12, 456.0);
-  for (PhotoFile& photo : photos) photo.tags.relative_altitude_m = 0.0;
+  std::vector<input::PhotoFile> photos = HeightFlight(12, 456.0);
+  for (input::PhotoFile& photo : photos) photo.tags.relative_altitude_m = 0.0;
   EXPECT_EQ(ClearUnfilledTags(kGap_s, photos).n_relative, 12U);
   EXPECT_FALSE(photos[0].tags.relative_altitude_m);
   // One photo in the air, one taken before take-off.
@@ -160,7 +161,7 @@ TEST(UnfilledTags, RelativeAltitudesOfZeroAreMissing) {
 }
 
 TEST(UnfilledTags, BothHeightsOfZeroAreMissing) {
-  std::vector<PhotoFile> photos = HeightFlight(12, 456.0);
+  std::vector<input::PhotoFile> photos = HeightFlight(12, 456.0);
   ZeroAltitude(photos[4]);
   photos[4].tags.relative_altitude_m = 0.0;
   const UnfilledTags found = ClearUnfilledTags(kGap_s, photos);
@@ -170,23 +171,23 @@ TEST(UnfilledTags, BothHeightsOfZeroAreMissing) {
 }
 
 TEST(UnfilledTags, GimbalAnglesOfZeroAreMissingUnlessTheFlightLooksLevel) {
-  const auto level = [](PhotoFile& photo) { photo.tags.gimbal_yaw_deg = photo.tags.gimbal_pitch_deg = photo.tags.gimbal_roll_deg = 0.0; };
-  std::vector<PhotoFile> photos = HeightFlight(12, 456.0);
+  const auto level = [](input::PhotoFile& photo) { photo.tags.gimbal_yaw_deg = photo.tags.gimbal_pitch_deg = photo.tags.gimbal_roll_deg = 0.0; };
+  std::vector<input::PhotoFile> photos = HeightFlight(12, 456.0);
   level(photos[3]);
   EXPECT_EQ(ClearUnfilledTags(kGap_s, photos).n_gimbal, 1U);
   EXPECT_FALSE(photos[3].tags.gimbal_pitch_deg);
   EXPECT_TRUE(photos[4].tags.gimbal_pitch_deg);
-  for (PhotoFile& photo : photos) level(photo);
+  for (input::PhotoFile& photo : photos) level(photo);
   EXPECT_EQ(ClearUnfilledTags(kGap_s, photos).n_gimbal, 12U);
   // A facade to the north, with some photos that look a little aside.
   photos = HeightFlight(12, 456.0);
-  for (PhotoFile& photo : photos) level(photo);
+  for (input::PhotoFile& photo : photos) level(photo);
   for (size_t i = 0; i < 6; ++i) photos[i].tags.gimbal_yaw_deg = 0.1;
   EXPECT_EQ(ClearUnfilledTags(kGap_s, photos).n_gimbal, 0U);
 }
 
 TEST(UnfilledTags, ZerosFoundAtReadingAreCounted) {
-  std::vector<PhotoFile> photos = HeightFlight(3, 456.0);
+  std::vector<input::PhotoFile> photos = HeightFlight(3, 456.0);
   photos[0].tags.zero_tags = {"FNumber", "FocalLength"};
   photos[2].tags.zero_tags = {"FocalLength"};
   const std::string text = ClearUnfilledTags(kGap_s, photos).Describe();
@@ -196,9 +197,9 @@ TEST(UnfilledTags, ZerosFoundAtReadingAreCounted) {
 }
 
 TEST(UnfilledTags, PitchesThatLookUpChangeTheirSignAndOthersStay) {
-  std::vector<PhotoFile> photos(20);
+  std::vector<input::PhotoFile> photos(20);
   const auto set = [&](double most_deg, double last_deg) {
-    for (PhotoFile& photo : photos) photo.tags.gimbal_pitch_deg = most_deg;
+    for (input::PhotoFile& photo : photos) photo.tags.gimbal_pitch_deg = most_deg;
     photos.back().tags.gimbal_pitch_deg = last_deg;
   };
   set(90.0, 45.0);
@@ -211,9 +212,9 @@ TEST(UnfilledTags, PitchesThatLookUpChangeTheirSignAndOthersStay) {
     EXPECT_FALSE(TurnPitchesThatLookUp(photos)) << usual_deg;
     EXPECT_EQ(photos.front().tags.gimbal_pitch_deg, usual_deg);
   }
-  std::vector<PhotoFile> without(3);
+  std::vector<input::PhotoFile> without(3);
   EXPECT_FALSE(TurnPitchesThatLookUp(without));
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::georeference

@@ -10,7 +10,7 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::poses;
 
 constexpr double kUnknownHeight_m = std::numeric_limits<double>::quiet_NaN();
 

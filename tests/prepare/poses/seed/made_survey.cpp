@@ -39,12 +39,12 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
     const double roll = plan.tilt_noise_deg * random.Normal(), pitch = plan.pitch_deg + plan.tilt_noise_deg * random.Normal();
     const Eigen::Vector3d angles((back ? 270.0 : 90.0) + plan.tilt_noise_deg * random.Normal(), pitch, roll);
     geo::Rigid3d pose;
-    pose.rotation = prepare::RotationFromAngles(angles.x(), angles.y(), angles.z());
+    pose.rotation = prepare::poses::RotationFromAngles(angles.x(), angles.y(), angles.z());
     pose.translation = -(pose.rotation * centre);
     made.cam_from_enu.push_back(pose);
     made.angles_deg.push_back(angles);
     centres.push_back(centre);
-    prepare::SeedPhoto photo;
+    prepare::poses::SeedPhoto photo;
     photo.image_id = static_cast<uint32_t>(i + 1);
     photo.camera_id = static_cast<uint32_t>(i % plan.cameras + 1);
     photo.name = "photo_" + std::to_string(100 + i) + ".jpg";
@@ -69,7 +69,7 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
     const double x = random.Uniform(-margin_m, size_x - margin_m), y = random.Uniform(-margin_m, size_y - margin_m);
     const Eigen::Vector3d point(x, y, Ground(x, y, plan.relief_m));
     for (size_t i = 0; i < feature_of.size(); ++i) {
-      prepare::SeedPhoto& photo = made.input.photos[i];
+      prepare::poses::SeedPhoto& photo = made.input.photos[i];
       const camera::Camera& camera = made.cameras[photo.camera_id - 1];
       const auto pixel = camera.ImgFromCam(made.cam_from_enu[i] * point);
       if (!pixel || pixel->x() < 0.0 || pixel->y() < 0.0 || pixel->x() > camera.width || pixel->y() > camera.height) continue;
@@ -83,7 +83,7 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
   for (uint32_t i = 0; i < static_cast<uint32_t>(n); ++i) {
     for (uint32_t j = i + 1; j < static_cast<uint32_t>(n); ++j) {
       if ((centres[i] - centres[j]).norm() > plan.reach_m) continue;
-      prepare::PairMatches pair{i + 1, j + 1, {}};
+      prepare::poses::PairMatches pair{i + 1, j + 1, {}};
       for (const auto& [p, feature] : feature_of[i]) {
         const auto other = feature_of[j].find(p);
         if (other == feature_of[j].end()) continue;

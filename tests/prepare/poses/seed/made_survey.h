@@ -29,7 +29,7 @@ struct SurveyPlan {
 };
 
 struct MadeSurvey {
-  prepare::SeedInput input;
+  prepare::poses::SeedInput input;
   std::vector<geo::Rigid3d> cam_from_enu;   // truth
   std::vector<camera::Camera> cameras;      // truth, id from 1
   std::vector<Eigen::Vector3d> angles_deg;  // truth: yaw, pitch, roll

@@ -35,7 +35,7 @@ TEST(ColorPoints, GivesTheMeanOfThePhotosThatCanBeRead) {
   const survey::ColmapObservations observations = {
       {1, {{7, {5.0, 5.0}}, {9, {64.0, 48.0}}}}, {2, {{7, {8.0, 40.0}}, {9, {60.0, 3.0}}}}, {3, {{7, {5.0, 5.0}}, {11, {5.0, 5.0}}}}};
   base::ThreadPool threads(2);
-  prepare::ColorPoints(model, observations, folder.path(), threads);
+  prepare::poses::ColorPoints(model, observations, folder.path(), threads);
   EXPECT_EQ(model.points[0].rgb, (std::array<uint8_t, 3>{150, 75, 10}));
   EXPECT_EQ(model.points[1].rgb, (std::array<uint8_t, 3>{5, 10, 40}));
   EXPECT_EQ(model.points[2].rgb, (std::array<uint8_t, 3>{1, 2, 3}));

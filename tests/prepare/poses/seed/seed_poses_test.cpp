@@ -16,8 +16,8 @@
 namespace skyquilt::test {
 namespace {
 
-using prepare::SeededModel;
-using prepare::SeedPoses;
+using prepare::poses::SeededModel;
+using prepare::poses::SeedPoses;
 
 struct Accuracy {
   double centre_m = 0.0;  // root mean square after a similarity
@@ -115,7 +115,7 @@ TEST_F(SeedPosesTest, AFocalLengthIsHeldAsFirmlyAsItsAccuracySays) {
 // A camera mounted across, or a compass that is off: the same error of all.
 TEST_F(SeedPosesTest, YawOffsetCommonToAll) {
   MadeSurvey made = MakeSurvey({.seed = 6});
-  for (prepare::SeedPhoto& photo : made.input.photos) *photo.yaw_deg += 90.0;
+  for (prepare::poses::SeedPhoto& photo : made.input.photos) *photo.yaw_deg += 90.0;
   const auto seeded = SeedPoses(made.input, threads_, &reason_);
   ExpectRight(made, seeded, 30);
   EXPECT_TRUE(seeded->by_gimbal);
@@ -123,7 +123,7 @@ TEST_F(SeedPosesTest, YawOffsetCommonToAll) {
 
 TEST_F(SeedPosesTest, UselessYawIsReplacedByMatchesWhenLookingDown) {
   MadeSurvey made = MakeSurvey({.seed = 7});
-  for (prepare::SeedPhoto& photo : made.input.photos) photo.yaw_deg = 0.0;
+  for (prepare::poses::SeedPhoto& photo : made.input.photos) photo.yaw_deg = 0.0;
   const auto seeded = SeedPoses(made.input, threads_, &reason_);
   ExpectRight(made, seeded, 30);
   EXPECT_FALSE(seeded->by_gimbal);
@@ -131,7 +131,7 @@ TEST_F(SeedPosesTest, UselessYawIsReplacedByMatchesWhenLookingDown) {
 
 TEST_F(SeedPosesTest, UselessYawOfObliquePhotosIsRefused) {
   MadeSurvey made = MakeSurvey({.pitch_deg = -55.0, .seed = 8});
-  for (prepare::SeedPhoto& photo : made.input.photos) photo.yaw_deg = 0.0;
+  for (prepare::poses::SeedPhoto& photo : made.input.photos) photo.yaw_deg = 0.0;
   EXPECT_FALSE(SeedPoses(made.input, threads_, &reason_));
   EXPECT_NE(reason_.find("gimbal angles and positions agree with only"), std::string::npos) << reason_;
 }
@@ -191,13 +191,13 @@ TEST_F(SeedPosesTest, TwoPhotosAreRefused) {
 TEST_F(SeedPosesTest, DuplicatePhotosAndMatches) {
   MadeSurvey made = MakeSurvey({.seed = 16});
   // The same photo under another name, with the matches of the first and all features matched to it.
-  prepare::SeedPhoto twin = made.input.photos[9];
+  prepare::poses::SeedPhoto twin = made.input.photos[9];
   twin.image_id = 31;
   twin.name = "twin.jpg";
-  prepare::PairMatches same{10, 31, {}};
+  prepare::poses::PairMatches same{10, 31, {}};
   for (uint32_t k = 0; k < twin.features.size(); ++k) same.features.push_back({k, k});
-  const std::vector<prepare::PairMatches> pairs = made.input.pairs;
-  for (prepare::PairMatches pair : pairs) {
+  const std::vector<prepare::poses::PairMatches> pairs = made.input.pairs;
+  for (prepare::poses::PairMatches pair : pairs) {
     made.input.pairs.push_back(pair);  // once more
     if (pair.image_a == 10) pair.image_a = 31;
     if (pair.image_b == 10) pair.image_b = 31;
@@ -211,7 +211,7 @@ TEST_F(SeedPosesTest, DuplicatePhotosAndMatches) {
 
 TEST_F(SeedPosesTest, PartsWithoutCommonMatchesAreRefused) {
   MadeSurvey made = MakeSurvey({.strips = 6, .seed = 17});
-  std::erase_if(made.input.pairs, [](const prepare::PairMatches& pair) { return (pair.image_a <= 18) != (pair.image_b <= 18); });
+  std::erase_if(made.input.pairs, [](const prepare::poses::PairMatches& pair) { return (pair.image_a <= 18) != (pair.image_b <= 18); });
   EXPECT_FALSE(SeedPoses(made.input, threads_, &reason_));
   EXPECT_NE(reason_.find("18 of 36 photos fit together"), std::string::npos) << reason_;
 }
@@ -267,7 +267,7 @@ TEST_F(SeedPosesTest, WrittenModelIsReadBack) {
   const auto seeded = SeedPoses(made.input, threads_, &reason_);
   ASSERT_TRUE(seeded) << reason_;
   const TemporaryFolder folder;
-  prepare::WriteSeededModel(*seeded, folder.path() / "model");
+  prepare::poses::WriteSeededModel(*seeded, folder.path() / "model");
   const survey::ColmapModel model = survey::ReadColmapModel(folder.path() / "model");
   const survey::ColmapObservations observations = survey::ReadColmapObservations(folder.path() / "model");
   ASSERT_EQ(model.images.size(), seeded->model.images.size());

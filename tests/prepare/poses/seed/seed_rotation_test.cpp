@@ -9,14 +9,14 @@
 namespace skyquilt::test {
 namespace {
 
-using namespace prepare;
+using namespace prepare::poses;
 
 TEST(RotationFromAngles, HasTheUpOfTheGimbal) {
   for (const double yaw : {0.0, 77.0, 200.0}) {
     for (const double pitch : {-90.0, -60.0, 0.0}) {
       for (const double roll : {0.0, 12.0, -5.0}) {
         const Eigen::Vector3d up = RotationFromAngles(yaw, pitch, roll) * Eigen::Vector3d::UnitZ();
-        EXPECT_LT((up - UpInCamera(pitch, roll)).norm(), 1e-12);
+        EXPECT_LT((up - prepare::input::UpInCamera(pitch, roll)).norm(), 1e-12);
       }
     }
   }
@@ -32,7 +32,7 @@ TEST(RotationsLookingDown, FindsTheTurnOfEveryPhoto) {
   std::string reason;
   ASSERT_TRUE(MakeSeedSurvey(made.input, &survey, &reason)) << reason;
   std::vector<SeedView> views;
-  for (const BundlePhoto& photo : survey.photos) views.push_back({true, Eigen::Quaterniond::Identity(), *photo.gps});
+  for (const prepare::bundle::BundlePhoto& photo : survey.photos) views.push_back({true, Eigen::Quaterniond::Identity(), *photo.gps});
   const auto rotations = RotationsLookingDown(survey.rays, views);
   for (size_t i = 0; i < rotations.size(); ++i) {
     ASSERT_TRUE(rotations[i]);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // All photos but the last have a pose, and their tracks agree.
@@ -30,7 +30,7 @@ class VerdictTest : public testing::Test {
   }
 
   static constexpr uint32_t kPhotos = 12, kLast = kPhotos - 1;
-  BundleProblem bundle_;
+  bundle::BundleProblem bundle_;
   uint32_t feature_ = 0;
 };
 
@@ -69,4 +69,4 @@ TEST_F(VerdictTest, ManyPhotosAreNoStrangers) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -33,7 +33,7 @@ std::optional<WithheldPhotos> WithholdPhotos(const std::unordered_set<uint32_t>&
 
 // Puts the withheld photos back at the end of the model's images, in any frame that the model has been moved to, and into the tracks of the points
 // that they show within a few sigmas of where these are. Nothing else in the model changes. Photos with fewer than kLeastObservations
-// (seeded/resect.h) such points stay out; returns their names.
+// (bundle/resect.h) such points stay out; returns their names.
 std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::ColmapModel& model);
 
 // Adds stations that had no part in a geo-reference to its lists, which afterwards are in the order of `stations`. `resected`: per station, 1 for

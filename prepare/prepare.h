@@ -4,12 +4,12 @@
 //   survey.json, points.ply, kept_points.ply, tracks.bin     the survey (core/survey/survey.h)
 //   geo_residuals.csv           per photo: camera position, GPS tag, residual, height above ground
 //   cameras.geojson             camera positions, when geo-referenced (opens in QGIS)
-//   geo_control.csv, control.geojson   errors of control and check points, when there are any (control_report.h)
+//   geo_control.csv, control.geojson   errors of control and check points, when there are any (control/fit/control_report.h)
 //   input.csv                   every file of the photo folder: taken or why not, its shot and mask (input/list_files.h)
-//   masks/                      the photos' masks, where they are not in that form already (input/masks.h)
+//   masks/                      the photos' masks, where they are not in that form already (input/masks/masks.h)
 //   photos_8bit/                pictures that all later stages read instead of the photos, when some have more than 8 bits or several bands
-//                               (plain_photos.h)
-//   scaled_model/               a COLMAP model that was made from photos of another size, scaled (match_sizes.h)
+//                               (input/plain_photos.h)
+//   scaled_model/               a COLMAP model that was made from photos of another size, scaled (input/match_sizes.h)
 //   colmap/                     database, models and log, when COLMAP was run, also for points of a model without; a second call resumes where the
 //                               first stopped
 // A folder with simulate.json is a simulated survey: its own model is used, and the survey keeps the paths of its truth.
@@ -23,11 +23,11 @@
 #include "core/survey/survey.h"
 #include "prepare/prepare_options.h"
 
-namespace skyquilt::prepare::poses {
+namespace skyquilt::prepare {
+
+namespace poses {
 class RemoteTasks;  // poses/pose_task.h
 }
-
-namespace skyquilt::prepare {
 
 struct PrepareInput {
   std::filesystem::path photos;      // folder, searched recursively; see FindInputs in input/input_folder.h

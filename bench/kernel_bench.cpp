@@ -15,7 +15,7 @@
 #include "core/encoding/hash_grid.h"
 #include "core/kernel/kernels.h"
 #include "core/kernel/machine_limits.h"
-#include "worker/field_step.h"
+#include "worker/step/field_step.h"
 
 namespace skyquilt::bench {
 namespace {

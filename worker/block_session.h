@@ -12,7 +12,7 @@
 #include "core/checkpoint/archive.h"
 #include "worker/fall_guard.h"
 #include "worker/field_trainer.h"
-#include "worker/surface_interval.h"
+#include "worker/start/surface_interval.h"
 #include "worker/trainer.h"
 
 namespace skyquilt::worker {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/base/thread_pool.h"
-#include "worker/ray_source.h"
-#include "worker/surface_interval.h"
+#include "worker/rays/ray_source.h"
+#include "worker/start/surface_interval.h"
 
 namespace skyquilt::worker {
 

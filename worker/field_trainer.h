@@ -9,12 +9,12 @@
 #include "core/base/thread_pool.h"
 #include "core/field/optimizer.h"
 #include "core/render/trained_field.h"
-#include "worker/field_step.h"
-#include "worker/photo_segments.h"
-#include "worker/point_planes.h"
+#include "worker/planes/point_planes.h"
 #include "worker/prior_options.h"
-#include "worker/ray_batch.h"
-#include "worker/ray_source.h"
+#include "worker/rays/photo_segments.h"
+#include "worker/rays/ray_batch.h"
+#include "worker/rays/ray_source.h"
+#include "worker/step/field_step.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::worker {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -48,28 +49,26 @@ scene::Background MakeBackground(const RaySource& source, const survey::Survey& 
     const auto i = static_cast<size_t>(photo);
     if (!survey.photos[i].is_test) of_photos[i] = SplatsOf(source, points, static_cast<int>(photo));
   });
-  std::vector<Splat> splats;
   std::vector<double> spacing;
-  for (std::vector<Splat>& of_photo : of_photos) {
-    for (const Splat& splat : of_photo) {
-      if (splat.column > 0 && !splats.empty()) spacing.push_back((splat.x - splats.back().x).head<2>().norm());
-      splats.push_back(splat);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(kInfinity), high = -low;
+  const Splat* before = nullptr;
+  for (const std::vector<Splat>& splats : of_photos) {
+    for (const Splat& splat : splats) {
+      if (splat.column > 0 && before != nullptr) spacing.push_back((splat.x - before->x).head<2>().norm());
+      low = low.cwiseMin(splat.x.head<2>());
+      high = high.cwiseMax(splat.x.head<2>());
+      before = &splat;
     }
-    of_photo = {};
   }
   if (spacing.empty()) return background;
-  Eigen::Vector2d low = splats.front().x.head<2>(), high = low;
-  for (const Splat& splat : splats) {
-    low = low.cwiseMin(splat.x.head<2>());
-    high = high.cwiseMax(splat.x.head<2>());
-  }
   const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
   const double cell_m = std::max(base::UpperMedian(spacing), size.maxCoeff() / kMostBackgroundCells);
   if (!(cell_m > 0.0)) return background;
   const int columns = static_cast<int>(size.x() / cell_m) + 1, rows = static_cast<int>(size.y() / cell_m) + 1;
   const size_t cells = static_cast<size_t>(columns) * static_cast<size_t>(rows);
   std::vector<double> sum(3 * cells, 0.0), count(cells, 0.0);
-  for (const Splat& splat : splats) {
+  const auto add = [&](const Splat& splat) {
     const int column = std::min(columns - 1, static_cast<int>((splat.x.x() - low.x()) / cell_m));
     const int row = std::min(rows - 1, static_cast<int>((splat.x.y() - low.y()) / cell_m));
     for (int v = std::max(0, row - kReach); v <= std::min(rows - 1, row + kReach); ++v) {
@@ -79,7 +78,8 @@ scene::Background MakeBackground(const RaySource& source, const survey::Survey& 
         count[cell] += 1.0;
       }
     }
-  }
+  };
+  for (const std::vector<Splat>& splats : of_photos) std::ranges::for_each(splats, add);
   for (size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(1.0, count[i / 3]);
   std::vector<double> heights;
   heights.reserve(cells);

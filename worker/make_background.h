@@ -3,7 +3,7 @@
 
 #include "core/scene/background.h"
 #include "core/survey/survey.h"
-#include "worker/ray_source.h"
+#include "worker/rays/ray_source.h"
 
 namespace skyquilt::worker {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <vector>
 
-#include "worker/field_step.h"
+#include "worker/step/field_step.h"
 
 namespace skyquilt::worker {
 

@@ -7,7 +7,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
-#include "worker/starting_occupancy.h"
+#include "worker/start/starting_occupancy.h"
 
 namespace skyquilt::worker {
 namespace {

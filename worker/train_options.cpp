@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/base/errors.h"
-#include "worker/photo_pyramid.h"
+#include "worker/rays/photo_pyramid.h"
 
 namespace skyquilt::worker {
 

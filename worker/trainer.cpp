@@ -12,12 +12,12 @@
 #include "worker/block_session.h"
 #include "worker/field_trainer.h"
 #include "worker/make_background.h"
-#include "worker/point_surface.h"
-#include "worker/starting_occupancy.h"
-#include "worker/surface_interval.h"
-#include "worker/tie_point_gains.h"
+#include "worker/start/point_surface.h"
+#include "worker/start/starting_occupancy.h"
+#include "worker/start/surface_interval.h"
+#include "worker/start/tie_point_gains.h"
+#include "worker/start/view_count.h"
 #include "worker/train_loop.h"
-#include "worker/view_count.h"
 
 namespace skyquilt::worker {
 namespace {

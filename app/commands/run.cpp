@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/command.h"
+#include "coordinator/stages/stage.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
@@ -17,11 +18,6 @@ struct RunFlags {
   bool restart = false;
 };
 
-// Buildings are found in the cloud and above the terrain model of the surface.
-bool MakesBuildings(const coordinator::Settings& settings) {
-  return settings.buildings.enabled && settings.surface.enabled && settings.surface.cloud && settings.surface.maps;
-}
-
 void Run(const CommandState& state, const RunFlags& flags, const std::vector<config::Override>& overrides) {
   if (flags.photos.empty() == flags.place.empty()) {
     throw base::UsageError("skyquilt run needs either a folder with photos or --place NAME, not both");
@@ -34,13 +30,13 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   if (!flags.model.empty() && !std::filesystem::exists(flags.model)) {
     throw base::InputError(flags.model, "no such folder or file", "Give the camera model of the photos, or leave --model out to run COLMAP");
   }
-  if (settings.tour.auto_stops > 0) viewer::TourPage(state.front_end);
+  if (coordinator::StageNamed("tour").wanted(settings)) viewer::TourPage(state.front_end);
   settings.evaluate.RequireFiles();
   if (const std::string& boundary = settings.products.boundary; !boundary.empty() && !std::filesystem::is_regular_file(boundary)) {
     throw base::InputError(boundary, "no such file", "Give a GeoJSON or GeoPackage file as products.boundary, or leave it empty");
   }
   if (const std::string& footprints = settings.buildings.footprints;
-      MakesBuildings(settings) && !footprints.empty() && !std::filesystem::is_regular_file(footprints)) {
+      coordinator::StageNamed("buildings").wanted(settings) && !footprints.empty() && !std::filesystem::is_regular_file(footprints)) {
     throw base::InputError(footprints, "no such file", "Give a file with outlines as buildings.footprints, or leave it empty to find buildings");
   }
   if (const std::string& masks = settings.prepare.masks; !masks.empty() && masks != "none" && !std::filesystem::exists(masks)) {
@@ -53,20 +49,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   }
   coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
   coordinator::RequireSameConfiguration(pipeline, "prepare");
-  std::filesystem::path photos = flags.photos;
-  if (!flags.place.empty()) {
-    photos = pipeline.project.SimulatedFolder();
-    coordinator::SimulateStage(pipeline, photos);
-  }
-  coordinator::PrepareStage(pipeline, photos, flags.model);
-  coordinator::PartitionStage(pipeline);
-  coordinator::TrainStage(pipeline);
-  coordinator::MergeStage(pipeline);
-  coordinator::ProductsStage(pipeline);
-  if (pipeline.settings.surface.enabled) coordinator::SurfaceStage(pipeline);
-  if (MakesBuildings(pipeline.settings)) coordinator::BuildingsStage(pipeline);
-  if (pipeline.settings.tour.auto_stops > 0) coordinator::TourStage(pipeline);
-  coordinator::EvaluateStage(pipeline);
+  coordinator::RunStages(pipeline, flags.photos, flags.model);
   coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
 }
 

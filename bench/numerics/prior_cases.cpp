@@ -15,9 +15,9 @@
 #include "core/base/random.h"
 #include "worker/losses/normal_loss.h"
 #include "worker/losses/robust_loss.h"
-#include "worker/plane_fit.h"
-#include "worker/point_planes.h"
-#include "worker/ray_source.h"
+#include "worker/planes/plane_fit.h"
+#include "worker/planes/point_planes.h"
+#include "worker/rays/ray_source.h"
 
 namespace skyquilt::bench {
 namespace {

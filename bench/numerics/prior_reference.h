@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bench/numerics/reference_trainer.h"
-#include "worker/plane_fit.h"
-#include "worker/step_priors.h"
+#include "worker/planes/plane_fit.h"
+#include "worker/step/step_priors.h"
 
 namespace skyquilt::bench {
 

@@ -8,7 +8,7 @@
 
 #include "bench/numerics/prior_reference.h"
 #include "bench/numerics/synthetic_trainer.h"
-#include "worker/point_planes.h"
+#include "worker/planes/point_planes.h"
 
 namespace skyquilt::bench {
 namespace {

@@ -9,8 +9,8 @@
 #include "bench/numerics/reference_field.h"
 #include "bench/numerics/synthetic_scene.h"
 #include "core/render/trained_field.h"
-#include "worker/field_step.h"
-#include "worker/ray_batch.h"
+#include "worker/rays/ray_batch.h"
+#include "worker/step/field_step.h"
 
 namespace skyquilt::bench {
 

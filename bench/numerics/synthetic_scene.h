@@ -7,7 +7,7 @@
 #include "core/base/random.h"
 #include "core/field/optimizer.h"
 #include "core/render/trained_field.h"
-#include "worker/ray_batch.h"
+#include "worker/rays/ray_batch.h"
 
 namespace skyquilt::bench {
 

@@ -6,7 +6,7 @@
 
 #include "bench/numerics/synthetic_scene.h"
 #include "core/base/thread_pool.h"
-#include "worker/field_step.h"
+#include "worker/step/field_step.h"
 
 namespace skyquilt::bench {
 

@@ -53,13 +53,22 @@ void BuildingsStage(Pipeline& pipeline) {
   RunStage(pipeline, "buildings");
 }
 
-void TourStage(Pipeline& pipeline) {
-  RunStage(pipeline, "tour");
-}
-
 const evaluate::Metrics& EvaluateStage(Pipeline& pipeline) {
   RunStage(pipeline, "evaluate");
   return pipeline.metrics;
+}
+
+void RunStages(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model) {
+  const std::filesystem::path folder = photos.empty() ? pipeline.project.SimulatedFolder() : photos;
+  for (const Stage& stage : Stages()) {
+    if (stage.name == "simulate") {
+      if (photos.empty()) SimulateStage(pipeline, folder);
+    } else if (stage.name == "prepare") {
+      PrepareStage(pipeline, folder, model);
+    } else if (stage.wanted == nullptr || stage.wanted(pipeline.settings)) {
+      RunStage(pipeline, stage.name);
+    }
+  }
 }
 
 void ThrowIfBlocksFailed(const scene::TrainReport& training, const Project& project) {

@@ -56,16 +56,17 @@ void BuildingsStage(Pipeline& pipeline);
 // Renders the facades of these buildings (ids, from 1; empty: all) into buildings/facades. The stage must be finished. Throws base::UsageError for an
 // id that there is none of.
 void WriteFacades(Pipeline& pipeline, const std::vector<int>& ids);
-// Exports the project's tour to tour/index.html; proposes one first where there is none that a person made, as chosen in [tour].
-void TourStage(Pipeline& pipeline);
 struct TourRequest {
   std::filesystem::path out;
   int auto_stops = 0;  // propose a tour with so many stops; 0: there must be one
   bool video = false;  // also write tour.mp4
 };
-// The same for any folder. Throws base::UsageError when a tour should be proposed and there is one that a person made.
+// Stage "tour" for any folder: exports the project's tour; proposes one first where that is asked for. Throws base::UsageError when there is one then
+// that a person made.
 void ExportProjectTour(Pipeline& pipeline, const TourRequest& request);
 const evaluate::Metrics& EvaluateStage(Pipeline& pipeline);
+// `run`: all stages that the settings ask for. photos may be empty: a survey is simulated, in the project's folder.
+void RunStages(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model);
 
 // Throws base::BlockError with the names of the failed blocks, if there are any.
 void ThrowIfBlocksFailed(const scene::TrainReport& training, const Project& project);

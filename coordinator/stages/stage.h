@@ -42,6 +42,8 @@ struct Stage {
   // Reads the results into the pipeline when there is nothing to do; null: no results are needed. Returns false when they cannot be read, and the
   // body runs again.
   bool (*load_results)(Pipeline& pipeline) = nullptr;
+  // Whether `run` makes it; null: always.
+  bool (*wanted)(const Settings& settings) = nullptr;
   OnNewInputs on_new_inputs = OnNewInputs::kRunAgain;
   // A separate folder for this stage and its stamp; null: the project folder.
   Project (*separate_folder)(const Project& project) = nullptr;

@@ -151,6 +151,11 @@ bool RecallMetrics(Pipeline& pipeline) {
   }
 }
 
+// They are found in the cloud and above the terrain model of the surface.
+bool MakesBuildings(const Settings& settings) {
+  return settings.buildings.enabled && settings.surface.enabled && settings.surface.cloud && settings.surface.maps;
+}
+
 std::vector<Stage> MakeTable() {
   return {
       {.name = "simulate",
@@ -235,7 +240,8 @@ std::vector<Stage> MakeTable() {
              return Paths{p.SurfaceFolder(), p.SurfaceWorkFolder()};
            },
        .completion_files = [](const Project& p) { return Paths{p.SurfaceTable()}; },
-       .body = SurfaceBody},
+       .body = SurfaceBody,
+       .wanted = [](const Settings& settings) { return settings.surface.enabled; }},
       {.name = "buildings",
        .options = {"buildings."},
        .ignored_options = {"buildings.enabled", "buildings.footprints", "buildings.facade_gsd"},
@@ -246,7 +252,9 @@ std::vector<Stage> MakeTable() {
            },
        .outputs = [](const Project& p) { return Paths{p.BuildingsFolder()}; },
        .completion_files = [](const Project& p) { return Paths{p.BuildingsFile()}; },
-       .body = BuildingsBody},
+       .body = BuildingsBody,
+       .wanted = MakesBuildings},
+      // Exports the project's tour to tour/index.html; proposes one first where there is none that a person made, as chosen in [tour].
       // Its options are inputs: another size exports the tour again.
       {.name = "tour",
        .options = {},
@@ -269,7 +277,8 @@ std::vector<Stage> MakeTable() {
              return outputs;
            },
        .completion_files = [](const Project& p) { return Paths{p.TourFolder() / "index.html"}; },
-       .body = TourBody},
+       .body = TourBody,
+       .wanted = [](const Settings& settings) { return settings.tour.auto_stops > 0; }},
       {.name = "evaluate",
        .options = {"evaluate.", "run.image_width"},
        // How often the scores are saved does not change them.

@@ -4,7 +4,7 @@
 // Gains and the field's colours are determined only up to a common factor. When every training photo learns, the mean log gain is therefore
 // subtracted after every step. This is a projection and not a penalty: with a penalty, field and gains would drift into opposite colour casts.
 // Vignetting is not learned this way: an unfinished field has larger errors in the corners of photos, where fewer photos overlap, and that looks
-// like vignetting (worker/tie_point_gains.h solves for it instead).
+// like vignetting (worker/start/tie_point_gains.h solves for it instead).
 #pragma once
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 
 #include "core/base/errors.h"
 #include "core/camera/distortion.h"
+#include "core/camera/lens.h"
 
 namespace skyquilt::camera {
 namespace {
@@ -167,8 +168,7 @@ std::optional<Eigen::Vector2d> Camera::ImgFromCam(const Eigen::Vector3d& x_in_ca
 }
 
 Eigen::Vector3d Camera::RayFromImg(const Eigen::Vector2d& pixel) const {
-  const Eigen::Vector2d focal(FocalX(), FocalY());
-  return DistortionOf(*this).Undistort((pixel - PrincipalPoint()).cwiseQuotient(focal));
+  return Lens(*this).RayFromImg(pixel);
 }
 
 Camera Camera::Resized(int new_width, int new_height) const {

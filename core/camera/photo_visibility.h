@@ -2,7 +2,7 @@
 // Callers use different rules (partition/visibility does not use this; it intersects rays with boxes):
 //   partition/survey_area  ground covered by photos: centres of raster cells up to a maximum distance, because far oblique views show little detail.
 //                          All edges of the frame count as inside. Masks are not used.
-//   worker/view_count      places that can be learned: balls around groups of cells, because a photo that shows only a part of a group helps too.
+//   worker/start/view_count places that can be learned: balls around groups of cells, because a photo that shows only a part of a group helps too.
 //                          A ball around or next to the camera counts in any direction. No maximum distance, no masks.
 //   evaluate/coverage      pixels that are scored: surface points that a training photo shows on an unmasked pixel. No maximum distance.
 #pragma once

@@ -8,7 +8,7 @@
 #include "core/scene/field_file.h"
 #include "tests/worker/small_survey.h"
 #include "worker/block_session.h"
-#include "worker/tie_point_gains.h"
+#include "worker/start/tie_point_gains.h"
 
 namespace skyquilt::worker {
 namespace {

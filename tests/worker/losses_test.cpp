@@ -13,7 +13,7 @@
 #include "worker/losses/point_depth_loss.h"
 #include "worker/losses/robust_loss.h"
 #include "worker/losses/smoothness_loss.h"
-#include "worker/ray_loss.h"
+#include "worker/step/ray_loss.h"
 
 namespace skyquilt::worker {
 namespace {

@@ -10,8 +10,8 @@
 #include "core/scene/field_file.h"
 #include "tests/worker/small_survey.h"
 #include "worker/block_session.h"
-#include "worker/starting_occupancy.h"
-#include "worker/surface_interval.h"
+#include "worker/start/starting_occupancy.h"
+#include "worker/start/surface_interval.h"
 #include "worker/trainer.h"
 
 namespace skyquilt::worker {

@@ -115,6 +115,20 @@ TEST(Stages, HaveUniqueNamesAndNeedOnlyEarlierOnes) {
   }
 }
 
+TEST(Stages, RunMakesBuildingsWhereThereIsASurfaceToFindThemIn) {
+  Settings settings;
+  settings.surface = {.enabled = true, .cloud = true, .maps = true};
+  settings.buildings.enabled = true;
+  const auto wanted = [&settings](const char* stage) { return StageNamed(stage).wanted(settings); };
+  EXPECT_TRUE(wanted("surface") && wanted("buildings"));
+  settings.surface.maps = false;
+  EXPECT_TRUE(wanted("surface") && !wanted("buildings"));
+  settings.tour.auto_stops = 0;
+  EXPECT_FALSE(wanted("tour"));
+  settings.tour.auto_stops = 2;
+  EXPECT_TRUE(wanted("tour"));
+}
+
 TEST(Stages, NameOptionsThatExist) {
   Settings settings;
   const FlatOptions all = settings.Flat();

@@ -1,10 +1,10 @@
 // Joins the rooms: project, store, engine, scene, tools, panels.
 import { StrictMode } from "react";
 import { createRoot, type Root } from "react-dom/client";
-import { AppView } from "../panels/app_view.js";
 import type { AppContext } from "../panels/context.js";
-import { showErrorMap } from "../panels/error_map.js";
-import { addViewCommands } from "../panels/view_commands.js";
+import { showErrorMap } from "../panels/layers/error_map.js";
+import { AppView } from "../panels/shell/app_view.js";
+import { addViewCommands } from "../panels/shell/view_commands.js";
 import { assetUrl, uploadAsset } from "../protocol/assets_client.js";
 import { loadBuildings } from "../protocol/buildings_client.js";
 import { connect } from "../protocol/link.js";

@@ -3,7 +3,7 @@ import type { Vec2 } from "../base/vec.js";
 import { norm, sub } from "../base/vec_math.js";
 import { poseLookingAt } from "../geo/camera.js";
 import type { AppContext } from "../panels/context.js";
-import { openCompare } from "../panels/open_compare.js";
+import { openCompare } from "../panels/photos/open_compare.js";
 import type { Link } from "../protocol/link_api.js";
 import type { Ray } from "../scene/scene_api.js";
 import type { SceneThing } from "../scene/thing.js";

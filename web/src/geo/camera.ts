@@ -122,3 +122,20 @@ export function interpolatePose(a: Pose, b: Pose, u: number): Pose {
     orthoHeightM: both ? Math.exp(mix(Math.log(a.orthoHeightM ?? 1), Math.log(b.orthoHeightM ?? 1))) : nearest,
   };
 }
+
+/** The view turned about the place in its middle so that north is up; null: the camera turns on the spot. */
+export function northUp(pose: Pose, targetEnu: Vec3 | null): Pose {
+  const { yawDeg, pitchDeg } = anglesOfPose(pose.rotation);
+  const rotation = rotationFromAngles({ yawDeg: 0, pitchDeg, rollDeg: 0 });
+  if (targetEnu === null) return { ...pose, rotation };
+  const yaw = (yawDeg * Math.PI) / 180;
+  const east = pose.eyeEnu[0] - targetEnu[0];
+  const north = pose.eyeEnu[1] - targetEnu[1];
+  // Yaw grows clockwise, so taking it back turns the eye counter-clockwise.
+  const eyeEnu: Vec3 = [
+    targetEnu[0] + Math.cos(yaw) * east - Math.sin(yaw) * north,
+    targetEnu[1] + Math.sin(yaw) * east + Math.cos(yaw) * north,
+    pose.eyeEnu[2],
+  ];
+  return { ...pose, eyeEnu, rotation };
+}

@@ -1,5 +1,6 @@
 // Numbers as people read them. What is not a number becomes a dash, never "NaN".
 import type { Vec2, Vec3 } from "../base/vec.js";
+import type { Estimate } from "./measure.js";
 
 export type UnitKind = "length" | "area" | "volume";
 
@@ -66,10 +67,7 @@ function decimalsOf(sigma: number): number {
 }
 
 /** "12.34 m ± 0.05 m": digits that fit sigma, one standard deviation; without sigma the value alone. */
-export function formatEstimate(
-  estimate: { readonly value: number; readonly sigma: number | null },
-  kind: UnitKind = "length",
-): string {
+export function formatEstimate(estimate: Estimate, kind: UnitKind = "length"): string {
   const { value, sigma } = estimate;
   if (!Number.isFinite(value)) return NOTHING;
   if (sigma === null || !Number.isFinite(sigma) || sigma < 0) return format(kind, value);
@@ -84,10 +82,7 @@ export function formatEstimate(
 }
 
 /** "41.2° ± 0.5°", or "12.34 ± 0.05" of a length whose unit is unknown: as formatEstimate, with any suffix. */
-export function formatWithSuffix(
-  { value, sigma }: { readonly value: number; readonly sigma: number | null },
-  suffix = "",
-): string {
+export function formatWithSuffix({ value, sigma }: Estimate, suffix = ""): string {
   if (!Number.isFinite(value)) return NOTHING;
   if (sigma === null || !Number.isFinite(sigma) || sigma < 0) return `${fixed(value, 2)}${suffix}`;
   if (sigma < 0.0005) return `${fixed(value, 3)}${suffix} ± <0.001${suffix}`;
@@ -121,6 +116,11 @@ export function formatDms(latitudeDeg: number, longitudeDeg: number): string {
 export function formatMap(en: Vec2 | Vec3): string {
   if (!Number.isFinite(en[0]) || !Number.isFinite(en[1])) return NOTHING;
   return `${fixed(en[0], 2)} E, ${fixed(en[1], 2)} N`;
+}
+
+/** "heights above the WGS84 ellipsoid" becomes "WGS84 ellipsoid": the column says height already. */
+export function shortVertical(vertical: string): string {
+  return vertical.replace(/^\s*(ellipsoidal\s+)?heights?\s+(are\s+)?above\s+(the\s+)?/i, "").trim();
 }
 
 /** The longest 1, 2 or 5 times a power of ten that is at most maxM, with its text for the scale bar; null when there is no room. */

@@ -19,7 +19,7 @@ import {
 } from "./covariance.js";
 
 /** Value with one standard deviation; sigma null: unknown. */
-export interface Value {
+export interface Estimate {
   readonly value: number;
   readonly sigma: number | null;
 }
@@ -34,7 +34,7 @@ export interface PlaceAccuracy {
 }
 
 const UP: Vec3 = [0, 0, 1];
-const NO_VALUE: Value = { value: 0, sigma: null };
+const NO_VALUE: Estimate = { value: 0, sigma: null };
 
 /** False: the deviations lack the geo-reference's part, wholly or partly. */
 export function knowsGeoReference(accuracy: PlaceAccuracy): boolean {
@@ -50,7 +50,7 @@ function tiltShare(accuracy: PlaceAccuracy): number {
   return ((accuracy.tiltDeg ?? 0) * Math.PI) / 180 / Math.SQRT2;
 }
 
-function estimate(value: number, pointVariance: number | null, shares: readonly number[]): Value {
+function estimate(value: number, pointVariance: number | null, shares: readonly number[]): Estimate {
   if (!Number.isFinite(value)) return { value: Number.NaN, sigma: null };
   const sigma = pointVariance === null ? null : Math.hypot(Math.sqrt(Math.max(0, pointVariance)), ...shares);
   return { value, sigma: sigma !== null && Number.isFinite(sigma) ? sigma : null };
@@ -129,7 +129,7 @@ function tiltOfPlan(points: readonly MeasuredPoint[]): number {
 export function distance(
   points: readonly MeasuredPoint[],
   accuracy: PlaceAccuracy,
-): { readonly slope: Value; readonly plan: Value; readonly rise: Value } {
+): { readonly slope: Estimate; readonly plan: Estimate; readonly rise: Estimate } {
   const first = points[0];
   const last = points[points.length - 1];
   if (first === undefined || last === undefined || points.length < 2) {
@@ -166,7 +166,7 @@ export function areaVector(points: readonly Vec3[]): Vec3 {
 export function area(
   points: readonly MeasuredPoint[],
   accuracy: PlaceAccuracy,
-): { readonly plan: Value; readonly sloped: Value; readonly perimeter: Value } {
+): { readonly plan: Estimate; readonly sloped: Estimate; readonly perimeter: Estimate } {
   if (points.length < 3) {
     return { plan: NO_VALUE, sloped: NO_VALUE, perimeter: distance(points, accuracy).slope };
   }
@@ -207,7 +207,7 @@ export function volume(
   depthSigmaM3: number | null,
   outline: readonly MeasuredPoint[],
   accuracy: PlaceAccuracy,
-): Value {
+): Estimate {
   const none: PlaceAccuracy = {
     scalePercent: null,
     tiltDeg: null,

@@ -13,7 +13,7 @@ import {
   optional,
 } from "../base/check.js";
 import type { Vec3 } from "../base/vec.js";
-import type { Estimate } from "../state/app_state.js";
+import type { Estimate } from "../geo/measure.js";
 import {
   type Building,
   type BuildingSet,

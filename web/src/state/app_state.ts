@@ -1,6 +1,7 @@
 // The state of the application that panels, tools and scene share: one immutable value in one store. The camera is not in it: it moves 60 times a
 // second, and read-outs are told of it 10 times a second (`readout`).
 import type { Quat, Vec2, Vec3 } from "../base/vec.js";
+import type { Estimate } from "../geo/measure.js";
 import type { Tour } from "../tour/types.js";
 import type { BuildingsState } from "./buildings.js";
 import type { GroundMap, Rights, TourPlay, TourView } from "./tour_state.js";
@@ -27,12 +28,6 @@ export interface SurfacePoint {
   /** Size of a pixel there, metres. */
   readonly pixelM: number;
   readonly source: "mesh" | "field";
-}
-
-/** Value with one standard deviation; sigma null: unknown. */
-export interface Estimate {
-  readonly value: number;
-  readonly sigma: number | null;
 }
 
 /** The project that is open, or the earlier one that it is compared with. */

@@ -2,7 +2,7 @@
 // scale that the program knows, in metres when `metric`.
 import type { Vec3 } from "../base/vec.js";
 import { type HeightProject, heightOffsetM } from "../geo/heights.js";
-import type { Enu, Estimate } from "./app_state.js";
+import type { Estimate } from "../geo/measure.js";
 
 export const ROOF_KINDS = ["flat", "gable", "hip", "other"] as const;
 export type RoofKind = (typeof ROOF_KINDS)[number];
@@ -31,7 +31,7 @@ export interface Face {
   readonly rings: readonly (readonly number[])[];
 }
 export interface Solid {
-  readonly vertices: readonly Enu[];
+  readonly vertices: readonly Vec3[];
   readonly faces: readonly Face[];
 }
 
@@ -84,7 +84,7 @@ export function boxOfBuilding({ solid }: Building): BuildingBox {
 }
 
 /** Above its middle, as high as its roof. */
-export function topOfBuilding(building: Building): Enu {
+export function topOfBuilding(building: Building): Vec3 {
   const { min, max } = boxOfBuilding(building);
   return [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, max[2]];
 }

@@ -1,8 +1,9 @@
 // Measurements as CSV (RFC 4180): what spreadsheets open. Numbers have a decimal point and no unit; shapes are WKT, which GIS read.
 import { geodeticFromEnu } from "../geo/earth.js";
+import type { Estimate } from "../geo/measure.js";
 import { pointSigma } from "../geo/measure.js";
 import { mapFromEnu } from "../geo/projection.js";
-import type { Estimate, Measurement, ProfileMeasurement, SurfacePoint } from "./app_state.js";
+import type { Measurement, ProfileMeasurement, SurfacePoint } from "./app_state.js";
 import { type MeasuredProject, middleOf } from "./measurements_file.js";
 
 type Cell = string | number | null;

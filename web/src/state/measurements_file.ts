@@ -4,9 +4,10 @@ import { CheckError } from "../base/check.js";
 import type { Vec2, Vec3 } from "../base/vec.js";
 import { geodeticFromEnu } from "../geo/earth.js";
 import { outlineOffsetM } from "../geo/heights.js";
+import type { Estimate } from "../geo/measure.js";
 import { areaVector, pointSigma } from "../geo/measure.js";
 import { mapFromEnu } from "../geo/projection.js";
-import type { Estimate, Measurement, SurfacePoint, Survey } from "./app_state.js";
+import type { Measurement, SurfacePoint, Survey } from "./app_state.js";
 import type { ProjectBase } from "./project.js";
 
 export type MeasuredProject = Pick<

@@ -16,7 +16,8 @@ import {
 } from "../base/check.js";
 import type { Vec3 } from "../base/vec.js";
 import { enuFromGeodetic, type Geodetic, geodeticFromEnu } from "../geo/earth.js";
-import type { Estimate, Measurement, SurfacePoint } from "./app_state.js";
+import type { Estimate } from "../geo/measure.js";
+import type { Measurement, SurfacePoint } from "./app_state.js";
 import { FILE_VERSION, type MeasuredProject } from "./measurements_file.js";
 
 const MOST_MEASUREMENTS = 100_000;

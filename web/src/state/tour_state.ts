@@ -1,11 +1,6 @@
 // What the page knows of the tour beside the tour itself: what may be changed, what is open in the panel, what is being placed, what is played.
-import { CheckError } from "../base/check.js";
 import type { NamedAsset } from "../tour/edit_assets.js";
 import type { PlayerView } from "../tour/player_view.js";
-import type { Tour } from "../tour/types.js";
-import type { Layers } from "./app_state.js";
-import { addNotice } from "./notices.js";
-import type { Store } from "./store.js";
 
 /** What this session may save. */
 export interface Rights {
@@ -61,33 +56,4 @@ export interface GroundMap {
   readonly corner: readonly [number, number];
   readonly across: readonly [number, number];
   readonly down: readonly [number, number];
-}
-
-/** Layers while no stop says otherwise: the author's aids are not for visitors. */
-export function layersForVisitors(layers: Layers): Layers {
-  return { ...layers, cameraPath: false, things: true };
-}
-
-export function setTourView(store: Store, patch: Partial<TourView>): void {
-  store.update(({ tour }) => ({ tour: { ...tour, ...patch } }));
-}
-
-/** One undoable step. Returns false, and tells why, when it cannot be done; does nothing when the tour may not be changed. */
-export function changeTour(store: Store, label: string, change: (tour: Tour) => Tour, group?: string): boolean {
-  if (store.get().tour.locked !== null) return false;
-  try {
-    store.changeDocuments(
-      label,
-      (documents) => {
-        const tour = change(documents.tour);
-        return tour === documents.tour ? documents : { ...documents, tour };
-      },
-      group,
-    );
-    return true;
-  } catch (error) {
-    if (!(error instanceof CheckError)) throw error;
-    addNotice(store, "error", `This cannot be added to the tour: ${error.message}.`);
-    return false;
-  }
 }

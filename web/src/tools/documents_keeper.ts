@@ -19,8 +19,8 @@ import {
   writeDocument,
 } from "../state/persistence.js";
 import type { Store } from "../state/store.js";
+import { setTourView } from "../state/tour_changes.js";
 import { readSavedTour } from "../state/tour_document.js";
-import { setTourView } from "../state/tour_state.js";
 import { readTour } from "../tour/read.js";
 import { writeTour } from "../tour/write.js";
 import { joinDocuments } from "./join_documents.js";

@@ -1,7 +1,7 @@
 // No tool: the mouse moves the camera. A click on a measurement, a thing of the tour or a building selects it.
 import type { Vec2 } from "../base/vec.js";
 import type { Enu, Measurement } from "../state/app_state.js";
-import { setTourView } from "../state/tour_state.js";
+import { setTourView } from "../state/tour_changes.js";
 import type { Tool, ToolPointer } from "./tool.js";
 import type { ToolContext } from "./tool_context.js";
 

@@ -1,7 +1,6 @@
 // How the view looks at a stop: layers, brightness and measurements as its author wants them. At the end all is as it was before.
 import type { Layers } from "../state/app_state.js";
 import type { Store } from "../state/store.js";
-import { layersForVisitors } from "../state/tour_state.js";
 import type { Stop } from "../tour/types.js";
 
 export class StopLook {
@@ -25,7 +24,10 @@ export class StopLook {
     // A stop that names the layer and no measurements means all of them.
     const all = stop.measurements.length === 0 && own.measurements === true;
     const layers: Layers = {
-      ...layersForVisitors(before.layers),
+      ...before.layers,
+      // The author's aids are not for visitors.
+      cameraPath: false,
+      things: true,
       measurements: all || stop.measurements.length > 0,
       ...own,
     };

@@ -2,8 +2,8 @@
 import type { AppState } from "../state/app_state.js";
 import { freeName } from "../state/names.js";
 import { addNotice } from "../state/notices.js";
+import { changeTour, setTourView } from "../state/tour_changes.js";
 import { tourPose } from "../state/tour_pose.js";
-import { changeTour, setTourView } from "../state/tour_state.js";
 import { addStop, newStop } from "../tour/edit_stops.js";
 import { commandAdder, playing } from "./play_commands.js";
 import type { ToolContext } from "./tool_context.js";

@@ -4,8 +4,8 @@ import type { LoadedDocument } from "../protocol/documents_client.js";
 import type { Documents } from "../state/app_state.js";
 import { addNotice, removeNotice } from "../state/notices.js";
 import type { Store } from "../state/store.js";
+import { setTourView } from "../state/tour_changes.js";
 import { readSavedTour } from "../state/tour_document.js";
-import { setTourView } from "../state/tour_state.js";
 
 const TEXT =
   "Another window has saved the tour meanwhile. Your changes are only in this page: take the other version, or keep yours, which then replaces it.";

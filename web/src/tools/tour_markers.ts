@@ -1,7 +1,7 @@
 // What a marker in the scene does when it is chosen: in a tour that is played it leads on, in the editor it is opened, else one flies to its stop.
 import type { SceneApi } from "../scene/scene_api.js";
 import type { Store } from "../state/store.js";
-import { setTourView } from "../state/tour_state.js";
+import { setTourView } from "../state/tour_changes.js";
 import { thingOf } from "../tour/edit_things.js";
 import { poseOf } from "../tour/route.js";
 import { stopOf } from "../tour/types.js";

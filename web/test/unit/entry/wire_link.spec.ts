@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { wireLink } from "../../../src/entry/wire_link.js";
-import { engineText } from "../../../src/panels/status_text.js";
+import { engineText } from "../../../src/panels/shell/status_text.js";
 import type { Link } from "../../../src/protocol/link_api.js";
 import { initialState } from "../../../src/state/initial.js";
 import { Store } from "../../../src/state/store.js";

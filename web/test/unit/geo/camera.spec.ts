@@ -6,6 +6,7 @@ import {
   anglesOfPose,
   forward,
   interpolatePose,
+  northUp,
   poseLookingAt,
   right,
   rotationFromAngles,
@@ -91,4 +92,19 @@ test("poses between two poses", () => {
   assert.equal(interpolatePose(a, { ...b, orthoHeightM: 50 }, 0.6).orthoHeightM, 50);
   const heights = interpolatePose({ ...a, orthoHeightM: 10 }, { ...b, orthoHeightM: 1000 }, 0.5).orthoHeightM;
   assert.ok(heights !== null && Math.abs(heights - 100) < 1e-9);
+});
+
+test("north up turns about the place that is looked at and keeps tilt and distance", () => {
+  const rotation = rotationFromAngles({ yawDeg: 125, pitchDeg: -40, rollDeg: 0 });
+  const ahead = forward(rotation);
+  const target = [30, -7, 2] as const;
+  const eye = [target[0] - 50 * ahead[0], target[1] - 50 * ahead[1], target[2] - 50 * ahead[2]] as const;
+  const turned = northUp({ eyeEnu: eye, rotation, fovyDeg: 50, orthoHeightM: null }, target);
+  const { yawDeg, pitchDeg } = anglesOfPose(turned.rotation);
+  assert.ok(Math.min(yawDeg, 360 - yawDeg) < 1e-9 && Math.abs(pitchDeg + 40) < 1e-9);
+  const now = forward(turned.rotation);
+  for (const axis of [0, 1, 2] as const) {
+    assert.ok(Math.abs(turned.eyeEnu[axis] + 50 * now[axis] - target[axis]) < 1e-9);
+  }
+  assert.deepEqual(northUp({ eyeEnu: eye, rotation, fovyDeg: 50, orthoHeightM: null }, null).eyeEnu, eye);
 });

@@ -9,6 +9,7 @@ import {
   formatMap,
   formatVolume,
   niceScale,
+  shortVertical,
 } from "../../../src/geo/format.js";
 
 test("lengths, areas, volumes", () => {
@@ -77,4 +78,9 @@ test("scale bars: the longest 1, 2 or 5 that fits", () => {
   }
   for (let exponent = -3; exponent < 6; exponent += 1) assert.equal(niceScale(10 ** exponent)?.lengthM, 10 ** exponent);
   for (const max of [0, -1, Number.NaN, Number.POSITIVE_INFINITY]) assert.equal(niceScale(max), null);
+});
+
+test("the datum in short", () => {
+  assert.equal(shortVertical("heights above the WGS84 ellipsoid"), "WGS84 ellipsoid");
+  assert.equal(shortVertical("local metres"), "local metres");
 });

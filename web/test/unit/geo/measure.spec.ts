@@ -8,10 +8,10 @@ import {
   areaVector,
   crossesItself,
   distance,
+  type Estimate,
   knowsGeoReference,
   type PlaceAccuracy,
   pointSigma,
-  type Value,
   volume,
 } from "../../../src/geo/measure.js";
 import type { SurfacePoint } from "../../../src/state/app_state.js";
@@ -198,7 +198,7 @@ test("too few, repeated, collinear and broken points give numbers or no deviatio
   const repeated = area([a, a, a], ACCURACY);
   assert.equal(repeated.plan.value, 0);
   assert.equal(repeated.plan.sigma, 0);
-  const broken: Value[] = [
+  const broken: Estimate[] = [
     ...Object.values(distance([a, samplePoint([Number.NaN, 0, 0])], ACCURACY)),
     ...Object.values(area([a, samplePoint([Number.NaN, 0, 0]), samplePoint([1, 1, 1])], ACCURACY)),
   ];

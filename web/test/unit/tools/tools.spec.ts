@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { mapFromEnu } from "../../../src/geo/projection.js";
-import { addViewCommands } from "../../../src/panels/view_commands.js";
+import { addViewCommands } from "../../../src/panels/shell/view_commands.js";
 import { newArea, newDistance, withMeasurement } from "../../../src/state/measurements.js";
 import { measurementAt } from "../../../src/tools/navigate_tool.js";
 import { createTools } from "../../../src/tools/tools.js";

@@ -1,7 +1,7 @@
 // A tour of three stops in a row, and what tests of tools need around it.
 import type { AppState } from "../../../src/state/app_state.js";
 import type { Store } from "../../../src/state/store.js";
-import { changeTour, setTourView } from "../../../src/state/tour_state.js";
+import { changeTour, setTourView } from "../../../src/state/tour_changes.js";
 import { addStop, changeStop, newStop, type StopChange } from "../../../src/tour/edit_stops.js";
 import { TourPlayer } from "../../../src/tour/player.js";
 import { EMPTY_TOUR, type Tour } from "../../../src/tour/types.js";

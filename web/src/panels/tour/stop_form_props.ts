@@ -1,0 +1,7 @@
+// What the form of a stop and its parts get.
+import type { Stop, Tour } from "../../tour/types.js";
+
+export interface StopFormProps {
+  readonly tour: Tour;
+  readonly stop: Stop;
+}

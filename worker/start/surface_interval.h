@@ -1,0 +1,58 @@
+// Surfaces as the trained context shows them: for the centre of every tile of every training photo the interval of the ray in which the transmittance
+// falls. Blocks use it to choose their tiles and their initial occupancy.
+#pragma once
+
+#include <vector>
+
+#include "core/base/thread_pool.h"
+#include "core/brightness/luminance.h"
+#include "core/brightness/response.h"
+#include "core/render/trained_field.h"
+#include "core/scene/background.h"
+#include "core/survey/survey.h"
+#include "worker/rays/ray_source.h"
+
+namespace skyquilt::worker {
+
+// Metres along the ray; NaN when the transmittance stays above the threshold, and for held-out photos.
+struct SurfaceInterval {
+  float front = 0.0F;   // transmittance falls below 0.85
+  float median = 0.0F;  // transmittance falls below 0.5
+  float back = 0.0F;    // transmittance falls below 0.15
+};
+
+// Index of a tile in [photo][row][column], kTileRows x kTileColumns per photo.
+constexpr size_t BandIndex(int photo, int row, int column) {
+  return (static_cast<size_t>(photo) * kTileRows + static_cast<size_t>(row)) * kTileColumns + static_cast<size_t>(column);
+}
+
+// Results of a finished context in addition to its field.
+struct ContextResults {
+  std::vector<SurfaceInterval> bands;  // [photo][row][column], kTileRows x kTileColumns per photo
+  scene::Background background;
+};
+
+// A trained context, as the training of blocks uses it.
+struct LoadedContext {
+  render::TrainedField field;
+  brightness::Response response;
+  brightness::Luminance luminance;
+  brightness::LuminanceState luminance_state;
+  std::vector<SurfaceInterval> bands;  // [photo][row][column], kTileRows x kTileColumns per photo; empty in old files
+
+  const SurfaceInterval& Band(int photo, int row, int column) const { return bands[BandIndex(photo, row, column)]; }
+  // Whether `bands` has an entry for every tile of the survey.
+  bool HasSurfaceIntervals(const survey::Survey& survey) const { return bands.size() == survey.photos.size() * kTileRows * kTileColumns; }
+};
+
+// Renders the depth of the context at every tile centre of the training photos; those of held-out photos, from whose places nothing is rendered, are
+// NaN. Calls context.BuildNetworks().
+std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const survey::Survey& survey, render::TrainedField& context,
+                                              base::ThreadPool& threads);
+
+// Sets the tiles from which the source draws a block's rays: those of `tiles` whose surface is inside the block's ground plan, and as empty tiles
+// those whose surface is behind the block. Without a context (null) all tiles whose centre ray crosses the block's box.
+void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, const render::TrainedField& target, const LoadedContext* context,
+                 double empty_ray_share, RaySource& source, base::ThreadPool& threads);
+
+}  // namespace skyquilt::worker

@@ -29,7 +29,7 @@ void MarkList(const std::filesystem::path& file, survey::Survey& survey) {
   std::vector<std::string> all;
   for (const survey::Photo& photo : survey.photos) all.push_back(photo.name);
   all.insert(all.end(), survey.unregistered.begin(), survey.unregistered.end());
-  const PhotoNames names(all);
+  const models::PhotoNames names(all);
   std::istringstream lines(base::ReadFile(file));
   bool first_line = true;
   for (std::string line; std::getline(lines, line);) {

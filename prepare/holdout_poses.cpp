@@ -10,14 +10,14 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/geo/enu_frame.h"
-#include "prepare/control/control_points.h"
-#include "prepare/control_fit/control_adjustment.h"
-#include "prepare/control_fit/control_block.h"
-#include "prepare/control_fit/fit_control.h"
-#include "prepare/control_fit/update_model.h"
+#include "prepare/bundle/resect.h"
+#include "prepare/control/fit/control_adjustment.h"
+#include "prepare/control/fit/control_bundle.h"
+#include "prepare/control/fit/fit_control.h"
+#include "prepare/control/fit/update_model.h"
+#include "prepare/control/reading/control_points.h"
 #include "prepare/poses/focal_check.h"
 #include "prepare/poses/loose_photos.h"
-#include "prepare/seeded/resect.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -25,22 +25,22 @@ namespace {
 // Photos that look straight down hardly determine the focal length. What the search for poses found, by tags too, must not be lost here.
 constexpr double kFocalSigma = 0.01;  // relative
 
-ControlBlock BlockWithoutControl(survey::ColmapModel& model, const survey::ColmapObservations& observations) {
-  const std::vector<Station> no_stations;
+control::ControlBundle BundleWithoutControl(survey::ColmapModel& model, const survey::ColmapObservations& observations) {
+  const std::vector<input::Station> no_stations;
   const std::vector<size_t> no_images;
-  const ControlPoints no_points;
-  return MakeControlBlock(
+  const control::ControlPoints no_points;
+  return control::MakeControlBundle(
       {.model = model, .observations = observations, .stations = no_stations, .image_of_station = no_images, .control = no_points});
 }
 
 // Where photos are holds the frame of an adjustment without tags, so loosely (the size of the survey) that it bends nothing.
-void HoldFrame(Block& block) {
+void HoldFrame(bundle::BundleProblem& bundle) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const BlockPhoto& photo : block.photos) middle += photo.centre / static_cast<double>(block.photos.size());
+  for (const bundle::BundlePhoto& photo : bundle.photos) middle += photo.centre / static_cast<double>(bundle.photos.size());
   double size = 0.0;
-  for (const BlockPhoto& photo : block.photos) size = std::max(size, (photo.centre - middle).norm());
+  for (const bundle::BundlePhoto& photo : bundle.photos) size = std::max(size, (photo.centre - middle).norm());
   if (!(size > 0.0)) return;
-  for (BlockPhoto& photo : block.photos) {
+  for (bundle::BundlePhoto& photo : bundle.photos) {
     photo.gps = photo.centre;
     photo.gps_sigma = Eigen::Vector3d::Constant(size);
   }
@@ -48,24 +48,24 @@ void HoldFrame(Block& block) {
 
 // How many photos only the removed ones tie to the rest.
 size_t CountNewlyLoose(const survey::ColmapModel& before, const survey::ColmapModel& after) {
-  const std::vector<std::string> were_loose = LoosePhotos(before), are_loose = LoosePhotos(after);
+  const std::vector<std::string> were_loose = poses::LoosePhotos(before), are_loose = poses::LoosePhotos(after);
   std::vector<std::string> newly;
   std::set_difference(are_loose.begin(), are_loose.end(), were_loose.begin(), were_loose.end(), std::back_inserter(newly));
   return newly.size();
 }
 
 // Why the model cannot be adjusted without the others; empty: it can.
-std::string WhyNot(const survey::ColmapModel& given, const survey::ColmapModel& rest, const ControlBlock& made) {
-  if (!made.known_lenses) return "the camera model has coefficients that the adjustment does not know";
-  if (made.n_ties < kLeastTies) {
-    return fmt::format("the model has {} points with observations in two of the other photos, {} are needed", made.n_ties, kLeastTies);
+std::string WhyNot(const survey::ColmapModel& given, const survey::ColmapModel& rest, const control::ControlBundle& tied) {
+  if (!tied.known_lenses) return "the camera model has coefficients that the adjustment does not know";
+  if (tied.n_ties < control::kLeastTies) {
+    return fmt::format("the model has {} points with observations in two of the other photos, {} are needed", tied.n_ties, control::kLeastTies);
   }
   const size_t loose = CountNewlyLoose(given, rest);
   return loose > 0 ? fmt::format("without them, {} of the other photos have nearly no points in common with the rest", loose) : "";
 }
 
 // By the order of names where times are not known.
-size_t NearestInTime(const std::vector<Station>& stations, size_t station, const std::vector<size_t>& among) {
+size_t NearestInTime(const std::vector<input::Station>& stations, size_t station, const std::vector<size_t>& among) {
   const auto distance = [&](size_t i) {
     const double in_list = std::abs(static_cast<double>(i) - static_cast<double>(station));
     const bool timed = stations[station].time_s && stations[i].time_s;
@@ -75,7 +75,7 @@ size_t NearestInTime(const std::vector<Station>& stations, size_t station, const
 }
 
 // The camera less its tag, corrected as another one's.
-Eigen::Vector3d ResidualAs(const Station& station, size_t other, const Georeference& georeference) {
+Eigen::Vector3d ResidualAs(const input::Station& station, size_t other, const georeference::Georeference& georeference) {
   const geo::EnuFrame frame(georeference.origin);
   geo::Geodetic tag = *station.gps;
   const bool has_height = std::isfinite(tag.height_m) && std::isfinite(georeference.residual_m[other].z());
@@ -92,31 +92,31 @@ std::optional<WithheldPhotos> WithholdPhotos(const std::unordered_set<uint32_t>&
                                              survey::ColmapModel& model, base::ThreadPool& threads, std::string* reason) {
   const auto is_withheld = [&](const survey::ColmapImage& image) { return withheld.contains(image.id); };
   survey::ColmapModel rest = model;
-  RemovePhotos(is_withheld, rest);
-  ControlBlock made = BlockWithoutControl(rest, observations);
-  *reason = WhyNot(model, rest, made);
+  poses::RemovePhotos(is_withheld, rest);
+  control::ControlBundle tied = BundleWithoutControl(rest, observations);
+  *reason = WhyNot(model, rest, tied);
   if (!reason->empty()) return std::nullopt;
-  HoldFrame(made.block);
-  for (BlockLens& lens : made.block.lenses) lens.focal_sigma = kFocalSigma;
-  const std::vector<BlockPhoto> before = made.block.photos;
-  base::Progress progress("adjust without held-out photos", kUsualIterations, "iterations");
-  const bool adjusted = AdjustToFeatures(made, threads, [&] { progress.Advance(); });
+  HoldFrame(tied.bundle);
+  for (bundle::BundleLens& lens : tied.bundle.lenses) lens.focal_sigma = kFocalSigma;
+  const std::vector<bundle::BundlePhoto> before = tied.bundle.photos;
+  base::Progress progress("adjust without held-out photos", control::kUsualIterations, "iterations");
+  const bool adjusted = control::AdjustToFeatures(tied, threads, [&] { progress.Advance(); });
   progress.Finish();
   if (!adjusted) {
     *reason = "the adjustment without them found no solution";
     return std::nullopt;
   }
-  UpdateModel(made, {}, before, true, rest);
-  if (const auto far = FindFarFocal(rest, model.cameras)) {
+  control::UpdateModel(tied, {}, before, true, rest);
+  if (const auto far = poses::FindFarFocal(rest, model.cameras)) {
     *reason = fmt::format("without them, the adjustment makes a focal length of {:.0f} px out of {:.0f} px", far->found_px, far->tagged_px);
     return std::nullopt;
   }
   std::vector<survey::ColmapPoint> placed;
-  for (size_t t = 0; t < made.n_ties; ++t) {
-    if (made.block.has_point[t] != 0) placed.push_back(std::move(rest.points[made.point_of_tie[t]]));
+  for (size_t t = 0; t < tied.n_ties; ++t) {
+    if (tied.bundle.has_point[t] != 0) placed.push_back(std::move(rest.points[tied.point_of_tie[t]]));
   }
   rest.points = std::move(placed);
-  WithheldPhotos photos{.images = {}, .observations = std::move(observations), .tie_sigma = made.tie_sigma};
+  WithheldPhotos photos{.images = {}, .observations = std::move(observations), .tie_sigma = tied.tie_sigma};
   std::copy_if(model.images.begin(), model.images.end(), std::back_inserter(photos.images), is_withheld);
   base::LogInfo(
       "{} held-out photos taken out of the model, {} others adjusted to their own features (sigma {:.2f} px at 1600 px); {} of {} points stay",
@@ -130,27 +130,27 @@ std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::Co
   constexpr double kLeastThreshold = 1.5;  // pixels of a photo of 1600 pixels width
   const size_t first = model.images.size();
   model.images.insert(model.images.end(), photos.images.begin(), photos.images.end());
-  ControlBlock made = BlockWithoutControl(model, photos.observations);
-  made.SetAccuracy(photos.tie_sigma, made.mark_sigma_px);
-  const double threshold = std::max(kTieThreshold, kLeastThreshold / photos.tie_sigma);
-  Block& block = made.block;
-  for (size_t i = first; i < block.photos.size(); ++i) block.photos[i].placed = false;
-  ResectPhotos(block, threshold);
+  control::ControlBundle tied = BundleWithoutControl(model, photos.observations);
+  tied.SetAccuracy(photos.tie_sigma, tied.mark_sigma_px);
+  const double threshold = std::max(control::kTieThreshold, kLeastThreshold / photos.tie_sigma);
+  bundle::BundleProblem& bundle = tied.bundle;
+  for (size_t i = first; i < bundle.photos.size(); ++i) bundle.photos[i].placed = false;
+  bundle::ResectPhotos(bundle, threshold);
 
-  const std::vector<std::vector<uint32_t>> entries = EntriesOfPhotos(block);
-  const std::vector<uint32_t> track_of = TrackOfEntries(block.tracks);
+  const std::vector<std::vector<uint32_t>> entries = bundle::EntriesOfPhotos(bundle);
+  const std::vector<uint32_t> track_of = bundle::TrackOfEntries(bundle.tracks);
   std::vector<survey::ColmapImage> resected;
   std::vector<std::string> lost;
-  for (size_t i = first; i < block.photos.size(); ++i) {
+  for (size_t i = first; i < bundle.photos.size(); ++i) {
     survey::ColmapImage& image = model.images[i];
-    const BlockPhoto& photo = block.photos[i];
-    if (!photo.placed || RefineByPoints(block, static_cast<uint32_t>(i), entries[i], track_of, threshold) < kLeastObservations) {
+    const bundle::BundlePhoto& photo = bundle.photos[i];
+    if (!photo.placed || bundle::RefineByPoints(bundle, static_cast<uint32_t>(i), entries[i], track_of, threshold) < bundle::kLeastObservations) {
       lost.push_back(image.name);
       continue;
     }
     image.cam_from_world = {photo.cam_from_enu, -(photo.cam_from_enu * photo.centre)};
     for (const uint32_t e : entries[i]) {
-      if (block.agrees[e] != 0) model.points[made.point_of_tie[track_of[e]]].image_ids.push_back(image.id);
+      if (bundle.agrees[e] != 0) model.points[tied.point_of_tie[track_of[e]]].image_ids.push_back(image.id);
     }
     resected.push_back(std::move(image));
   }
@@ -160,11 +160,11 @@ std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::Co
   return lost;
 }
 
-void AddResected(const std::vector<Station>& stations, const std::vector<char>& resected, Georeference& georeference) {
+void AddResected(const std::vector<input::Station>& stations, const std::vector<char>& resected, georeference::Georeference& georeference) {
   SKYQUILT_CHECK(stations.size() == resected.size(), "one flag per station");
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const size_t n = stations.size();
-  Georeference all = georeference;
+  georeference::Georeference all = georeference;
   all.flight.assign(n, 0);
   all.correction_m.assign(n, Eigen::Vector3d::Zero());
   all.residual_m.assign(n, Eigen::Vector3d::Constant(unknown));

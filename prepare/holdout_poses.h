@@ -12,8 +12,8 @@
 
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_model.h"
-#include "prepare/georeference.h"
-#include "prepare/station.h"
+#include "prepare/georeference/georeference.h"
+#include "prepare/input/station.h"
 
 namespace skyquilt::prepare {
 
@@ -33,11 +33,11 @@ std::optional<WithheldPhotos> WithholdPhotos(const std::unordered_set<uint32_t>&
 
 // Puts the withheld photos back at the end of the model's images, in any frame that the model has been moved to, and into the tracks of the points
 // that they show within a few sigmas of where these are. Nothing else in the model changes. Photos with fewer than kLeastObservations
-// (seeded/resect.h) such points stay out; returns their names.
+// (bundle/resect.h) such points stay out; returns their names.
 std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::ColmapModel& model);
 
 // Adds stations that had no part in a geo-reference to its lists, which afterwards are in the order of `stations`. `resected`: per station, 1 for
 // those. Their tags count as not agreeing; each is compared with its photo as that of the photo nearest to it in time was.
-void AddResected(const std::vector<Station>& stations, const std::vector<char>& resected, Georeference& georeference);
+void AddResected(const std::vector<input::Station>& stations, const std::vector<char>& resected, georeference::Georeference& georeference);
 
 }  // namespace skyquilt::prepare

@@ -6,18 +6,18 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/geo/enu_frame.h"
-#include "prepare/georeference.h"
+#include "prepare/georeference/georeference.h"
 
 namespace skyquilt::prepare {
 
-bool LacksPoints(const InputModel& model) {
-  return model.format != ModelFormat::kColmap && model.sfm.points.empty();
+bool LacksPoints(const models::InputModel& model) {
+  return model.format != models::ModelFormat::kColmap && model.sfm.points.empty();
 }
 
-void RequireColmap(const InputModel& model, const std::filesystem::path& path, const std::string& colmap) {
+void RequireColmap(const models::InputModel& model, const std::filesystem::path& path, const std::string& colmap) {
   if (!base::FindProgram(colmap).empty()) return;
   std::string fix = "Install COLMAP (Debian: apt install colmap) or set prepare.colmap to its path: it triangulates points from the poses. Or ";
-  if (model.format == ModelFormat::kTransforms) {
+  if (model.format == models::ModelFormat::kTransforms) {
     fix += "name a PLY with points of the same frame as ply_file_path";
   } else {
     fix += "give a model with points, for instance in COLMAP's format";
@@ -25,14 +25,14 @@ void RequireColmap(const InputModel& model, const std::filesystem::path& path, c
   throw base::InputError(path, "has poses but no sparse points, which give the heights above ground", fix);
 }
 
-void PlaceByModel(const ModelPlace& place, std::vector<Station>& stations) {
-  const auto tagged = std::count_if(stations.begin(), stations.end(), [](const Station& station) { return station.gps.has_value(); });
-  if (tagged >= kMinAgreeing) return;
+void PlaceByModel(const models::ModelPlace& place, std::vector<input::Station>& stations) {
+  const auto tagged = std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value(); });
+  if (tagged >= georeference::kMinAgreeing) return;
   base::LogInfo("{} of {} photos have GPS tags, so the positions of the model are used ({}); their accuracy is not known", tagged, stations.size(),
                 place.source);
   const geo::EnuFrame frame(place.origin);
-  const Station untagged;
-  for (Station& station : stations) {
+  const input::Station untagged;
+  for (input::Station& station : stations) {
     station.gps = frame.GeodeticFromEnu(place.enu_from_model * station.cam_from_model.OriginInSource());
     station.rtk = false;
     station.horizontal_sigma_m = untagged.horizontal_sigma_m;
@@ -40,7 +40,7 @@ void PlaceByModel(const ModelPlace& place, std::vector<Station>& stations) {
   }
 }
 
-void HoldOutByModel(const InputModel& model, const std::filesystem::path& path, survey::Survey& survey) {
+void HoldOutByModel(const models::InputModel& model, const std::filesystem::path& path, survey::Survey& survey) {
   if (model.test_photos.empty()) return;
   const auto is_test = [&model](const survey::Photo& photo) { return model.test_photos.contains(photo.name); };
   const auto n_test = static_cast<size_t>(std::count_if(survey.photos.begin(), survey.photos.end(), is_test));

@@ -17,36 +17,36 @@
 #include "core/base/order_statistics.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/height_reference.h"
-#include "prepare/control_report.h"
-#include "prepare/flight_checks.h"
-#include "prepare/georeference.h"
+#include "prepare/bundle/intrinsics_sigma.h"
+#include "prepare/bundle/resect.h"
+#include "prepare/control/fit/control_report.h"
+#include "prepare/georeference/checks/flight_checks.h"
+#include "prepare/georeference/checks/horizontal_lines.h"
+#include "prepare/georeference/checks/result_checks.h"
+#include "prepare/georeference/georeference.h"
+#include "prepare/georeference/place_by_control.h"
+#include "prepare/georeference/shape_by_tags.h"
+#include "prepare/georeference/sparse_cloud.h"
+#include "prepare/georeference/tags/photo_positions.h"
+#include "prepare/georeference/tags/unfilled_tags.h"
 #include "prepare/holdout.h"
 #include "prepare/holdout_poses.h"
-#include "prepare/horizontal_lines.h"
 #include "prepare/input/input_folder.h"
 #include "prepare/input/input_table.h"
 #include "prepare/input/list_files.h"
-#include "prepare/input/masks.h"
+#include "prepare/input/masks/masks.h"
+#include "prepare/input/match_photos.h"
+#include "prepare/input/match_sizes.h"
+#include "prepare/input/photo_files.h"
+#include "prepare/input/plain_photos.h"
 #include "prepare/input/shots.h"
-#include "prepare/intrinsics_sigma.h"
-#include "prepare/match_photos.h"
-#include "prepare/match_sizes.h"
 #include "prepare/model_use.h"
 #include "prepare/models/read_model.h"
-#include "prepare/photo_files.h"
-#include "prepare/photo_positions.h"
-#include "prepare/place_by_control.h"
-#include "prepare/plain_photos.h"
 #include "prepare/poses/colmap_run.h"
 #include "prepare/poses/focal_check.h"
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
-#include "prepare/result_checks.h"
-#include "prepare/seeded/resect.h"
-#include "prepare/shape_by_tags.h"
-#include "prepare/sparse_cloud.h"
 #include "prepare/survey_points.h"
-#include "prepare/unfilled_tags.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -55,62 +55,63 @@ namespace fs = std::filesystem;
 
 constexpr const char* kInputTable = "input.csv";
 
-std::vector<Station> MakeStations(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files) {
-  std::vector<Station> stations;
+std::vector<input::Station> MakeStations(const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files) {
+  std::vector<input::Station> stations;
   stations.reserve(registered.size());
-  for (const Registered& entry : registered) {
-    stations.push_back(MakeStation(files[entry.file].name, entry.image->cam_from_world, files[entry.file].tags));
+  for (const input::Registered& entry : registered) {
+    stations.push_back(input::MakeStation(files[entry.file].name, entry.image->cam_from_world, files[entry.file].tags));
   }
   return stations;
 }
 
 // Per station, index into the model's images.
-std::vector<size_t> ImagesOf(const std::vector<Registered>& registered, const survey::ColmapModel& model) {
+std::vector<size_t> ImagesOf(const std::vector<input::Registered>& registered, const survey::ColmapModel& model) {
   std::vector<size_t> images;
   images.reserve(registered.size());
-  for (const Registered& entry : registered) images.push_back(static_cast<size_t>(entry.image - model.images.data()));
+  for (const input::Registered& entry : registered) images.push_back(static_cast<size_t>(entry.image - model.images.data()));
   return images;
 }
 
 // Index into the survey's photos by COLMAP's image id.
-std::unordered_map<uint32_t, int32_t> PhotoOfImage(const std::vector<Registered>& registered) {
+std::unordered_map<uint32_t, int32_t> PhotoOfImage(const std::vector<input::Registered>& registered) {
   std::unordered_map<uint32_t, int32_t> photo_of_image;
   for (size_t i = 0; i < registered.size(); ++i) photo_of_image.emplace(registered[i].image->id, static_cast<int32_t>(i));
   return photo_of_image;
 }
 
 // All files of the photo folder, with a table of them even where too few can be used.
-std::vector<InputFile> ListFiles(const PrepareInput& input, const PrepareOptions& options, const InputFolder& folders, base::ThreadPool& threads) {
-  const ListOptions list{
+std::vector<input::InputFile> ListFiles(const PrepareInput& input, const PrepareOptions& options, const input::InputFolder& folders,
+                                        base::ThreadPool& threads) {
+  const input::ListOptions list{
       .skip = {input.out_folder, fs::absolute(input.out_folder).parent_path()}, .masks = folders.masks.given, .patterns = options.photos};
-  std::vector<InputFile> files = ListInput(folders.photo_root, list, threads);
-  WriteInputTable(files, input.out_folder / kInputTable);
-  base::LogInfo(SummaryText(files, input.out_folder / kInputTable));
-  for (const std::string& warning : InputWarnings(folders.photo_root, files)) base::LogWarning(warning);
+  std::vector<input::InputFile> files = input::ListInput(folders.photo_root, list, threads);
+  input::WriteInputTable(files, input.out_folder / kInputTable);
+  base::LogInfo(input::SummaryText(files, input.out_folder / kInputTable));
+  for (const std::string& warning : input::InputWarnings(folders.photo_root, files)) base::LogWarning(warning);
   return files;
 }
 
 // What reading the photos told: those that are damaged, and those of one shot.
-void NoteReadPhotos(const PhotoSet& photos, std::vector<InputFile>& files) {
-  const std::vector<size_t> shots = FindShots(photos.usable);
-  const size_t n_shots = CountShots(shots);
+void NoteReadPhotos(const input::PhotoSet& photos, std::vector<input::InputFile>& files) {
+  const std::vector<size_t> shots = input::FindShots(photos.usable);
+  const size_t n_shots = input::CountShots(shots);
   if (n_shots < photos.usable.size()) {
     base::LogInfo("{} photos are of {} shots, as exposure brackets; prepare.photos can choose one exposure of each by their names",
                   photos.usable.size(), n_shots);
   }
-  std::unordered_map<std::string, InputFile*> by_name;
-  for (InputFile& file : files) by_name.emplace(file.name, &file);
+  std::unordered_map<std::string, input::InputFile*> by_name;
+  for (input::InputFile& file : files) by_name.emplace(file.name, &file);
   for (const std::string& name : photos.unreadable) {
-    by_name.at(name)->kind = FileKind::kDamaged;
+    by_name.at(name)->kind = input::FileKind::kDamaged;
     by_name.at(name)->reason = "cannot be used: the log says why";
   }
   for (size_t i = 0; i < shots.size(); ++i) by_name.at(photos.usable[i].name)->shot = by_name.at(photos.usable[shots[i]].name)->shot;
 }
 
 // A model may have been made of pictures that are no photos here.
-void WarnOfPosesLeftOut(const survey::ColmapModel& model, const std::vector<InputFile>& files) {
-  std::unordered_map<std::string, const InputFile*> left_out;
-  for (const InputFile& file : files) {
+void WarnOfPosesLeftOut(const survey::ColmapModel& model, const std::vector<input::InputFile>& files) {
+  std::unordered_map<std::string, const input::InputFile*> left_out;
+  for (const input::InputFile& file : files) {
     if (!file.Taken()) left_out.emplace(file.name, &file);
   }
   std::vector<std::string> names;
@@ -119,20 +120,20 @@ void WarnOfPosesLeftOut(const survey::ColmapModel& model, const std::vector<Inpu
   }
   if (names.empty()) return;
   base::LogWarning("the model has poses of {} files that are left out here ({}; {} is: {}). To use them, choose them with prepare.photos",
-                   names.size(), FewNames(names), names.front(), left_out.at(names.front())->reason);
+                   names.size(), input::FewNames(names), names.front(), left_out.at(names.front())->reason);
 }
 
 // Puts poses, tags and cameras into the survey. Cameras without photos are left out.
-void FillPhotos(const survey::ColmapModel& model, const std::vector<Registered>& registered, const std::vector<PhotoFile>& files,
-                const std::vector<std::string>& masks, const Georeference& georeference, survey::Survey& survey) {
+void FillPhotos(const survey::ColmapModel& model, const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files,
+                const std::vector<std::string>& masks, const georeference::Georeference& georeference, survey::Survey& survey) {
   std::map<uint32_t, int> camera_index;
   std::optional<double> first_time_s;
-  for (const Registered& entry : registered) {
+  for (const input::Registered& entry : registered) {
     if (const auto time_s = files[entry.file].tags.capture_time_s) first_time_s = std::min(first_time_s.value_or(*time_s), *time_s);
   }
   for (size_t i = 0; i < registered.size(); ++i) {
     const survey::ColmapImage& image = *registered[i].image;
-    const PhotoFile& file = files[registered[i].file];
+    const input::PhotoFile& file = files[registered[i].file];
     const auto [found, is_new] = camera_index.emplace(image.camera_id, static_cast<int>(survey.cameras.size()));
     if (is_new) survey.cameras.push_back(model.cameras.at(image.camera_id));
     survey::Photo photo;
@@ -155,12 +156,12 @@ void FillPhotos(const survey::ColmapModel& model, const std::vector<Registered>&
 }
 
 // Tags of the photos that place the survey. Too few of them do not: then the model's own positions do, see PlaceByModel.
-std::vector<survey::PhotoTags> PlacingTags(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files) {
+std::vector<survey::PhotoTags> PlacingTags(const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files) {
   std::vector<survey::PhotoTags> tags;
-  for (const Registered& entry : registered) {
+  for (const input::Registered& entry : registered) {
     if (files[entry.file].tags.gps) tags.push_back(files[entry.file].tags);
   }
-  if (tags.size() < kMinAgreeing) tags.clear();
+  if (tags.size() < georeference::kMinAgreeing) tags.clear();
   return tags;
 }
 
@@ -177,7 +178,7 @@ void RequirePlace(const survey::Survey& survey, const fs::path& folder) {
 // NaN when the model's observations cannot be read: they serve this check alone.
 double MeasureK1Sigma(const survey::ColmapModel& model, const fs::path& model_folder, uint32_t camera_id) {
   try {
-    return MeasureLensAccuracy(model, survey::ReadColmapObservations(model_folder), camera_id).k1_sigma;
+    return bundle::MeasureLensAccuracy(model, survey::ReadColmapObservations(model_folder), camera_id).k1_sigma;
   } catch (const base::InputError& error) {
     base::LogInfo("the accuracy of the lens is not computed: {}", error.what());
     return std::numeric_limits<double>::quiet_NaN();
@@ -186,28 +187,28 @@ double MeasureK1Sigma(const survey::ColmapModel& model, const fs::path& model_fo
 
 // Needs the survey's photos, place and heights above ground. `has_observations`: in COLMAP's files, of features in photos, not a simulation's
 // projections.
-void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<Registered>& registered,
-                   const std::vector<PhotoFile>& files, bool has_observations, survey::Survey& survey) {
+void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<input::Registered>& registered,
+                   const std::vector<input::PhotoFile>& files, bool has_observations, survey::Survey& survey) {
   std::vector<const survey::PhotoTags*> tags;
   tags.reserve(registered.size());
-  for (const Registered& entry : registered) tags.push_back(&files[entry.file].tags);
-  survey.checks = CheckFlight(survey, tags);
+  for (const input::Registered& entry : registered) tags.push_back(&files[entry.file].tags);
+  survey.checks = georeference::CheckFlight(survey, tags);
   const auto main = std::find_if(survey.photos.begin(), survey.photos.end(),
-                                 [camera = MainCamera(survey)](const survey::Photo& photo) { return photo.camera == camera; });
+                                 [camera = georeference::MainCamera(survey)](const survey::Photo& photo) { return photo.camera == camera; });
   if (has_observations && main != survey.photos.end()) {
     const uint32_t camera_id = registered[static_cast<size_t>(main - survey.photos.begin())].image->camera_id;
     survey.checks.k1_sigma = MeasureK1Sigma(model, model_folder, camera_id);
   }
-  base::LogInfo(DescribeChecks(survey.checks));
-  for (survey::Problem& problem : FlightProblems(survey.checks, survey)) survey.problems.push_back(std::move(problem));
+  base::LogInfo(georeference::DescribeChecks(survey.checks));
+  for (survey::Problem& problem : georeference::FlightProblems(survey.checks, survey)) survey.problems.push_back(std::move(problem));
 }
 
 // Focal lengths that the tags say, by the camera ids of the model.
-std::map<uint32_t, double> TaggedFocals(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files) {
+std::map<uint32_t, double> TaggedFocals(const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files) {
   std::map<uint32_t, std::vector<double>> tagged_px;
-  for (const Registered& entry : registered) {
-    const PhotoFile& file = files[entry.file];
-    if (const auto focal_px = TaggedFocalPx(file.tags, file.width, file.height)) tagged_px[entry.image->camera_id].push_back(*focal_px);
+  for (const input::Registered& entry : registered) {
+    const input::PhotoFile& file = files[entry.file];
+    if (const auto focal_px = poses::TaggedFocalPx(file.tags, file.width, file.height)) tagged_px[entry.image->camera_id].push_back(*focal_px);
   }
   std::map<uint32_t, double> median_px;
   for (auto& [id, values] : tagged_px) median_px.emplace(id, base::Median(std::move(values)));
@@ -215,26 +216,26 @@ std::map<uint32_t, double> TaggedFocals(const std::vector<Registered>& registere
 }
 
 // Needs the survey's photos, place and heights above ground.
-void CheckAgainstTags(const std::vector<Registered>& registered, const std::vector<PhotoFile>& files, const GimbalVerdict& gimbal, bool own_poses,
-                      survey::Survey& survey) {
-  CheckedResult result{
+void CheckAgainstTags(const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files,
+                      const georeference::GimbalVerdict& gimbal, bool own_poses, survey::Survey& survey) {
+  georeference::CheckedResult result{
       .photos = {}, .georeferenced = survey.georeferenced, .own_poses = own_poses, .by_control = survey.control.placed, .gimbal = gimbal};
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
-    const PhotoFile& file = files[registered[i].file];
+    const input::PhotoFile& file = files[registered[i].file];
     const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
     result.photos.push_back({.cam_from_enu = photo.cam_from_enu.rotation,
                              .camera = photo.camera,
                              .focal_px = camera.FocalX(),
                              .longer_side_px = static_cast<double>(std::max(camera.width, camera.height)),
                              .agl_m = photo.agl_m,
-                             .tagged_focal_px = TaggedFocalPx(file.tags, camera.width, camera.height),
+                             .tagged_focal_px = poses::TaggedFocalPx(file.tags, camera.width, camera.height),
                              .relative_altitude_m = photo.relative_altitude_m,
                              .gimbal_yaw_deg = file.tags.gimbal_yaw_deg,
                              .gimbal_pitch_deg = file.tags.gimbal_pitch_deg,
                              .gimbal_roll_deg = file.tags.gimbal_roll_deg});
   }
-  ApplyChecks(CheckResult(result), survey);
+  georeference::ApplyChecks(georeference::CheckResult(result), survey);
 }
 
 void LogDirections(const survey::DominantDirections& directions) {
@@ -247,28 +248,28 @@ void LogDirections(const survey::DominantDirections& directions) {
 }
 
 // For a model without any.
-std::vector<survey::ColmapPoint> PointsFromPoses(const ColmapJob& job, const survey::ColmapModel& model, const std::vector<Registered>& registered,
-                                                 const std::vector<PhotoFile>& files, const PoseOptions& options, base::ThreadPool& threads,
-                                                 RemoteTasks* ranks) {
+std::vector<survey::ColmapPoint> PointsFromPoses(const poses::ColmapJob& job, const survey::ColmapModel& model,
+                                                 const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files,
+                                                 const poses::PoseOptions& options, base::ThreadPool& threads, poses::RemoteTasks* ranks) {
   survey::ColmapModel poses;
-  std::vector<PhotoFile> photos;
-  for (const Registered& entry : registered) {
+  std::vector<input::PhotoFile> photos;
+  for (const input::Registered& entry : registered) {
     photos.push_back(files[entry.file]);
     poses.images.push_back(*entry.image);
     poses.images.back().name = photos.back().name;
     poses.cameras.emplace(entry.image->camera_id, model.cameras.at(entry.image->camera_id));
   }
-  return TriangulatePoints(job, photos, poses, options, threads, ranks);
+  return poses::TriangulatePoints(job, photos, poses, options, threads, ranks);
 }
 
 // Names of the held-out photos, those of photos with a pose. Chosen while all of these still have it, so that the same ones are held out whatever
 // prepare.holdout_poses does. `names`: of all photos.
-std::set<std::string> ChooseHeldOut(const PrepareOptions& options, const InputModel& model, const fs::path& model_path,
-                                    const std::vector<Registered>& registered, const std::vector<PhotoFile>& files,
+std::set<std::string> ChooseHeldOut(const PrepareOptions& options, const models::InputModel& model, const fs::path& model_path,
+                                    const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files,
                                     const std::vector<std::string>& names) {
   survey::Survey survey;
   std::set<std::string> with_pose;
-  for (const Registered& entry : registered) {
+  for (const input::Registered& entry : registered) {
     survey.photos.emplace_back().name = files[entry.file].name;
     with_pose.insert(files[entry.file].name);
   }
@@ -283,11 +284,11 @@ std::set<std::string> ChooseHeldOut(const PrepareOptions& options, const InputMo
 }
 
 // Takes the held-out photos out of the model. Nothing when their poses stay as the model has them; the log says why.
-std::optional<WithheldPhotos> Withhold(const std::set<std::string>& held_out, const std::vector<Registered>& registered,
-                                       const std::vector<PhotoFile>& files, const fs::path& model_folder, bool has_observations,
+std::optional<WithheldPhotos> Withhold(const std::set<std::string>& held_out, const std::vector<input::Registered>& registered,
+                                       const std::vector<input::PhotoFile>& files, const fs::path& model_folder, bool has_observations,
                                        survey::ColmapModel& model, base::ThreadPool& threads) {
   std::unordered_set<uint32_t> images;
-  for (const Registered& entry : registered) {
+  for (const input::Registered& entry : registered) {
     if (held_out.contains(files[entry.file].name)) images.insert(entry.image->id);
   }
   std::optional<WithheldPhotos> withheld;
@@ -303,69 +304,71 @@ std::optional<WithheldPhotos> Withhold(const std::set<std::string>& held_out, co
 
 // Puts withheld photos back into the model and the geo-reference. Returns all photos of the model in name order. Throws base::UsageError when none
 // of them can be placed.
-std::vector<Registered> PutBack(const WithheldPhotos& withheld, const std::set<std::string>& held_out, const FileOfImage& file_of_image,
-                                const std::vector<PhotoFile>& files, survey::ColmapModel& model, Georeference& georeference) {
+std::vector<input::Registered> PutBack(const WithheldPhotos& withheld, const std::set<std::string>& held_out, const input::FileOfImage& file_of_image,
+                                       const std::vector<input::PhotoFile>& files, survey::ColmapModel& model,
+                                       georeference::Georeference& georeference) {
   const std::vector<std::string> lost = ResectWithheld(withheld, model);
   if (lost.size() == withheld.images.size()) {
     throw base::UsageError(
         fmt::format("prepare.holdout_poses = resected: none of the {} held-out photos ({}) sees enough points of the others to be placed by them. "
                     "Set it to given, or "
                     "hold out photos that overlap more with others (prepare.holdout), and add --restart",
-                    lost.size(), FewNames(lost)));
+                    lost.size(), input::FewNames(lost)));
   }
   if (!lost.empty()) {
-    base::LogWarning("{} held-out photos get no pose, because they see fewer than {} points of the others: {}", lost.size(), kLeastObservations,
-                     FewNames(lost));
+    base::LogWarning("{} held-out photos get no pose, because they see fewer than {} points of the others: {}", lost.size(),
+                     bundle::kLeastObservations, input::FewNames(lost));
   }
-  std::vector<Registered> registered = RegisteredPhotos(model, file_of_image);
+  std::vector<input::Registered> registered = input::RegisteredPhotos(model, file_of_image);
   std::vector<char> resected;
-  for (const Registered& entry : registered) resected.push_back(held_out.contains(files[entry.file].name) ? 1 : 0);
+  for (const input::Registered& entry : registered) resected.push_back(held_out.contains(files[entry.file].name) ? 1 : 0);
   AddResected(MakeStations(registered, files), resected, georeference);
   return registered;
 }
 
 }  // namespace
 
-survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks,
+survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, poses::RemoteTasks* ranks,
                        const OnPlaced& on_placed) {
   options.Check();
-  InputFolder folders = FindInputs(input.photos, input.model, options.masks);
+  input::InputFolder folders = input::FindInputs(input.photos, input.model, options.masks);
   base::RequireWritableFolder(input.out_folder);
 
-  std::vector<InputFile> files = ListFiles(input, options, folders, threads);
-  const std::vector<std::string> names = TakenNames(files);
-  PhotoSet photos = ReadPhotos(folders.photo_root, names, threads);
+  std::vector<input::InputFile> files = ListFiles(input, options, folders, threads);
+  const std::vector<std::string> names = input::TakenNames(files);
+  input::PhotoSet photos = input::ReadPhotos(folders.photo_root, names, threads);
   // The pictures that all others read, under the same names.
-  const fs::path picture_root = MakePlainPhotos(folders.photo_root, options.bands, input.out_folder / "photos_8bit", photos, threads);
-  UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
-  LogUnfilledTags(options.flight_gap_s, photos.usable);
-  TurnPitchesThatLookUp(photos.usable);
-  const PhotoMasks masks = FindMasks(folders.photo_root, folders.masks, photos.usable, fs::absolute(input.out_folder) / "masks", files, threads);
+  const fs::path picture_root = input::MakePlainPhotos(folders.photo_root, options.bands, input.out_folder / "photos_8bit", photos, threads);
+  georeference::UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
+  georeference::LogUnfilledTags(options.flight_gap_s, photos.usable);
+  georeference::TurnPitchesThatLookUp(photos.usable);
+  const input::PhotoMasks masks =
+      input::FindMasks(folders.photo_root, folders.masks, photos.usable, fs::absolute(input.out_folder) / "masks", files, threads);
   NoteReadPhotos(photos, files);
-  WriteInputTable(files, input.out_folder / kInputTable);
+  input::WriteInputTable(files, input.out_folder / kInputTable);
   // Faults of these files are told before the long search for poses.
-  const ControlPoints control_points = ReadControlPoints(options, photos.usable);
+  const control::ControlPoints control_points = georeference::ReadControlPoints(ControlFilesOf(options), photos.usable);
   base::ThrowIfCancelled();
 
-  InputModel input_model;
+  models::InputModel input_model;
   const bool own_poses = folders.model.empty();
   if (own_poses) {
-    const ColmapJob job{picture_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
-    folders.model = RunColmap(job, photos.usable, PoseOptionsOf(options), threads, ranks);
+    const poses::ColmapJob job{picture_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
+    folders.model = poses::RunColmap(job, photos.usable, PoseOptionsOf(options), threads, ranks);
     input_model.sfm = survey::ReadColmapModel(folders.model);
   } else {
-    input_model = ReadModel(folders.model, ModelPhotos(folders.photo_root, names));
+    input_model = models::ReadModel(folders.model, models::ModelPhotos(folders.photo_root, names));
     WarnOfPosesLeftOut(input_model.sfm, files);
   }
-  const bool has_observations = !folders.exact_origin && input_model.format == ModelFormat::kColmap;
-  folders.model = ScaleToPhotos(FindPhotos(input_model.sfm, photos.usable), photos.usable, folders.model, has_observations,
-                                fs::absolute(input.out_folder) / "scaled_model", input_model.sfm);
+  const bool has_observations = !folders.exact_origin && input_model.format == models::ModelFormat::kColmap;
+  folders.model = input::ScaleToPhotos(input::FindPhotos(input_model.sfm, photos.usable), photos.usable, folders.model, has_observations,
+                                       fs::absolute(input.out_folder) / "scaled_model", input_model.sfm);
   const survey::ColmapModel& model = input_model.sfm;
-  const FileOfImage file_of_image = MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
-  std::vector<Registered> registered = RegisteredPhotos(model, file_of_image);
+  const input::FileOfImage file_of_image = input::MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
+  std::vector<input::Registered> registered = input::RegisteredPhotos(model, file_of_image);
   if (LacksPoints(input_model)) {
     RequireColmap(input_model, folders.model, options.colmap);
-    const ColmapJob job{picture_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
+    const poses::ColmapJob job{picture_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
     input_model.sfm.points = PointsFromPoses(job, model, registered, photos.usable, PoseOptionsOf(options), threads, ranks);
   }
   const auto poses_known = std::chrono::steady_clock::now();
@@ -373,26 +376,28 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   std::optional<WithheldPhotos> withheld;
   if (options.holdout_poses == "resected" && !held_out.empty()) {
     withheld = Withhold(held_out, registered, photos.usable, folders.model, has_observations, input_model.sfm, threads);
-    registered = RegisteredPhotos(model, file_of_image);
+    registered = input::RegisteredPhotos(model, file_of_image);
   }
 
-  std::vector<Station> stations = MakeStations(registered, photos.usable);
+  std::vector<input::Station> stations = MakeStations(registered, photos.usable);
   if (input_model.place) PlaceByModel(*input_model.place, stations);
   std::vector<Eigen::Vector3d> points;
   points.reserve(model.points.size());
   for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
-  Georeference georeference =
-      folders.exact_origin ? KeepExactFrame(stations, *folders.exact_origin, options) : PlaceOnEarth(stations, points, options);
+  const georeference::PlaceOptions place_options = PlaceOptionsOf(options);
+  georeference::Georeference georeference = folders.exact_origin ? georeference::KeepExactFrame(stations, *folders.exact_origin, place_options)
+                                                                 : georeference::PlaceOnEarth(stations, points, place_options);
   const std::vector<size_t> image_of_station = ImagesOf(registered, model);
   // Control points say more of the shape than tags; check points are compared with the final one.
-  const bool any_control = std::any_of(control_points.points.begin(), control_points.points.end(), [](const ControlPoint& p) { return !p.check; });
+  const bool any_control =
+      std::any_of(control_points.points.begin(), control_points.points.end(), [](const control::ControlPoint& p) { return !p.check; });
   if (has_observations && !any_control) {
-    ShapeByTags({options, image_of_station, folders.model, TaggedFocals(registered, photos.usable)}, input_model.sfm, stations, georeference,
-                threads);
+    georeference::ShapeByTags({place_options, image_of_station, folders.model, TaggedFocals(registered, photos.usable)}, input_model.sfm, stations,
+                              georeference, threads);
   }
-  survey::ControlFit control =
-      PlaceByControl({options, control_points, image_of_station, folders.model, has_observations, folders.exact_origin.has_value()}, input_model.sfm,
-                     stations, georeference, threads);
+  survey::ControlFit control = georeference::PlaceByControl(
+      {place_options, control_points, image_of_station, folders.model, has_observations, folders.exact_origin.has_value()}, input_model.sfm, stations,
+      georeference, threads);
   const std::vector<survey::PhotoTags> placing_tags = PlacingTags(registered, photos.usable);
   if (withheld) registered = PutBack(*withheld, held_out, file_of_image, photos.usable, input_model.sfm, georeference);
 
@@ -415,21 +420,21 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
     if (!with_pose.contains(name)) survey.unregistered.push_back(name);
   }
   FillPoints(model, georeference.enu_from_model, PhotoOfImage(registered), options.keep_points, survey);
-  MeasureAgl(survey, threads);
+  georeference::MeasureAgl(survey, threads);
   // An exact frame is the truth, whatever the tags say.
   if (!folders.exact_origin) CheckAgainstTags(registered, photos.usable, georeference.gimbal, own_poses, survey);
   if (on_placed) on_placed(survey, poses_known);
   CheckFlightOf(model, folders.model, registered, photos.usable, has_observations, survey);
   base::ThrowIfCancelled();
-  const FoundLines lines = FindHorizontalLines(survey, threads);
-  survey.directions = FindDirections(lines.lines, lines.photos);
+  const georeference::FoundLines lines = georeference::FindHorizontalLines(survey, threads);
+  survey.directions = georeference::FindDirections(lines.lines, lines.photos);
   LogDirections(survey.directions);
 
   LogSummary(survey);
   if (!survey.unregistered.empty())
-    base::LogWarning("{} photos without a pose are not used: {}", survey.unregistered.size(), FewNames(survey.unregistered));
+    base::LogWarning("{} photos without a pose are not used: {}", survey.unregistered.size(), input::FewNames(survey.unregistered));
   WriteResidualTable(survey, georeference, input.out_folder / "geo_residuals.csv");
-  WriteControlReport(survey, input.out_folder);
+  control::WriteControlReport(survey, input.out_folder);
   if (survey.georeferenced) {
     WriteCameraMap(survey, input.out_folder / "cameras.geojson");
   } else {

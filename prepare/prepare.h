@@ -4,12 +4,12 @@
 //   survey.json, points.ply, kept_points.ply, tracks.bin     the survey (core/survey/survey.h)
 //   geo_residuals.csv           per photo: camera position, GPS tag, residual, height above ground
 //   cameras.geojson             camera positions, when geo-referenced (opens in QGIS)
-//   geo_control.csv, control.geojson   errors of control and check points, when there are any (control_report.h)
+//   geo_control.csv, control.geojson   errors of control and check points, when there are any (control/fit/control_report.h)
 //   input.csv                   every file of the photo folder: taken or why not, its shot and mask (input/list_files.h)
-//   masks/                      the photos' masks, where they are not in that form already (input/masks.h)
+//   masks/                      the photos' masks, where they are not in that form already (input/masks/masks.h)
 //   photos_8bit/                pictures that all later stages read instead of the photos, when some have more than 8 bits or several bands
-//                               (plain_photos.h)
-//   scaled_model/               a COLMAP model that was made from photos of another size, scaled (match_sizes.h)
+//                               (input/plain_photos.h)
+//   scaled_model/               a COLMAP model that was made from photos of another size, scaled (input/match_sizes.h)
 //   colmap/                     database, models and log, when COLMAP was run, also for points of a model without; a second call resumes where the
 //                               first stopped
 // A folder with simulate.json is a simulated survey: its own model is used, and the survey keeps the paths of its truth.
@@ -25,7 +25,9 @@
 
 namespace skyquilt::prepare {
 
+namespace poses {
 class RemoteTasks;  // poses/pose_task.h
+}
 
 struct PrepareInput {
   std::filesystem::path photos;      // folder, searched recursively; see FindInputs in input/input_folder.h
@@ -40,7 +42,7 @@ using OnPlaced = std::function<void(const survey::Survey& survey, std::chrono::s
 // Photos that cannot be used are left out with a warning that names them. Throws base::UsageError for invalid options, base::InputError when fewer
 // than 3 usable photos remain or a file cannot be read or written, base::Interrupted when asked to stop. `ranks`: processes that share the
 // search for poses; null: this one does it alone, with the same result.
-survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, RemoteTasks* ranks = nullptr,
+survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, poses::RemoteTasks* ranks = nullptr,
                        const OnPlaced& on_placed = {});
 
 }  // namespace skyquilt::prepare

@@ -1,8 +1,8 @@
 #include "prepare/prepare_options.h"
 
 #include "core/base/errors.h"
-#include "prepare/band_choice.h"
 #include "prepare/holdout.h"
+#include "prepare/input/band_choice.h"
 #include "prepare/input/glob.h"
 
 namespace skyquilt::prepare {
@@ -71,12 +71,12 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
 void PrepareOptions::Check() const {
   config::CheckRanges("prepare", *this);
   ParseHoldout(holdout);
-  if (!photos.empty()) ParsePatterns(photos);
-  CheckBandsOption(bands);
+  if (!photos.empty()) input::ParsePatterns(photos);
+  input::CheckBandsOption(bands);
   if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: set it to the name or path of the COLMAP program, for instance colmap");
 }
 
-PoseOptions PoseOptionsOf(const PrepareOptions& options) {
+poses::PoseOptions PoseOptionsOf(const PrepareOptions& options) {
   return {.fast = options.poses == "fast",
           .seed_poses = options.seed_poses,
           .colmap = options.colmap,
@@ -84,6 +84,23 @@ PoseOptions PoseOptionsOf(const PrepareOptions& options) {
           .max_image_size = options.max_image_size,
           .max_features = options.max_features,
           .use_gpu = options.use_gpu,
+          .seed = options.seed};
+}
+
+control::ControlFiles ControlFilesOf(const PrepareOptions& options) {
+  return {.points = options.gcp,
+          .marks = options.gcp_marks,
+          .crs = options.gcp_crs,
+          .columns = options.gcp_columns,
+          .heights = options.gcp_heights,
+          .check_points = options.check_points};
+}
+
+georeference::PlaceOptions PlaceOptionsOf(const PrepareOptions& options) {
+  return {.ransac_threshold_m = options.ransac_threshold_m,
+          .flight_gap_s = options.flight_gap_s,
+          .flight_offsets = options.flight_offsets,
+          .tag_lag = options.tag_lag,
           .seed = options.seed};
 }
 

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "core/config/options.h"
+#include "prepare/control/reading/read_control.h"
+#include "prepare/georeference/place_options.h"
 #include "prepare/poses/pose_options.h"
 
 namespace skyquilt::prepare {
@@ -42,7 +44,9 @@ struct PrepareOptions {
   void Check() const;
 };
 
-// The part that the search for poses needs.
-PoseOptions PoseOptionsOf(const PrepareOptions& options);
+// The parts that the search for poses, the reading of control points and the geo-reference need.
+poses::PoseOptions PoseOptionsOf(const PrepareOptions& options);
+control::ControlFiles ControlFilesOf(const PrepareOptions& options);
+georeference::PlaceOptions PlaceOptionsOf(const PrepareOptions& options);
 
 }  // namespace skyquilt::prepare

@@ -10,7 +10,7 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/survey/geo_fit_json.h"
-#include "prepare/csv_field.h"
+#include "prepare/tables/csv_field.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -59,7 +59,7 @@ const char* HeightsText(geo::HeightReference reference) {
 void LogTags(const survey::Survey& survey) {
   const survey::GeoFit& fit = survey.fit;
   if (fit.n_inliers > 0) {
-    const std::string vertical = std::isfinite(fit.rmse_vertical_m) ? CsvNumber(fit.rmse_vertical_m, 2) + " m vertical" : "heights not used";
+    const std::string vertical = std::isfinite(fit.rmse_vertical_m) ? tables::CsvNumber(fit.rmse_vertical_m, 2) + " m vertical" : "heights not used";
     base::LogInfo("GPS: {} of {} tags agree, RMSE {:.2f} m ({:.2f} m horizontal, {}), {:.6g} m per model unit", fit.n_inliers, fit.n_matches,
                   fit.rmse_m, fit.rmse_horizontal_m, vertical, fit.scale);
     return;
@@ -98,18 +98,19 @@ void LogSummary(const survey::Survey& survey) {
   LogGravity(fit);
   const geo::PlaceAccuracy& accuracy = fit.accuracy;
   base::LogInfo("accuracy (one standard deviation): position {} m, height {}, scale {} %, tilt {} deg, yaw {} deg",
-                CsvNumber(accuracy.horizontal_m, 2), std::isfinite(accuracy.vertical_m) ? CsvNumber(accuracy.vertical_m, 2) + " m" : "unknown",
-                CsvNumber(accuracy.scale_percent, 3), CsvNumber(accuracy.tilt_deg, 2), CsvNumber(accuracy.yaw_deg, 2));
+                tables::CsvNumber(accuracy.horizontal_m, 2),
+                std::isfinite(accuracy.vertical_m) ? tables::CsvNumber(accuracy.vertical_m, 2) + " m" : "unknown",
+                tables::CsvNumber(accuracy.scale_percent, 3), tables::CsvNumber(accuracy.tilt_deg, 2), tables::CsvNumber(accuracy.yaw_deg, 2));
   std::vector<double> relative;
   for (const survey::Photo& photo : survey.photos) {
     if (photo.relative_altitude_m) relative.push_back(*photo.relative_altitude_m);
   }
   const std::string tagged = relative.empty() ? "no RelativeAltitude tag to compare with"
-                                              : "median RelativeAltitude tag " + CsvNumber(base::Median(relative), 1) + " m above take-off";
-  base::LogInfo("height above ground: median {} m; {}", std::isfinite(agl) ? CsvNumber(agl, 1) : "unknown", tagged);
+                                              : "median RelativeAltitude tag " + tables::CsvNumber(base::Median(relative), 1) + " m above take-off";
+  base::LogInfo("height above ground: median {} m; {}", std::isfinite(agl) ? tables::CsvNumber(agl, 1) : "unknown", tagged);
 }
 
-void WriteResidualTable(const survey::Survey& survey, const Georeference& georeference, const std::filesystem::path& file) {
+void WriteResidualTable(const survey::Survey& survey, const georeference::Georeference& georeference, const std::filesystem::path& file) {
   const geo::EnuFrame frame(survey.origin);
   std::string text =
       "name,east_m,north_m,up_m,latitude_deg,longitude_deg,height_m,tag_latitude_deg,tag_longitude_deg,tag_height_m,"
@@ -118,22 +119,24 @@ void WriteResidualTable(const survey::Survey& survey, const Georeference& georef
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
     const Eigen::Vector3d centre = photo.cam_from_enu.OriginInSource();
-    text += CsvText(photo.name) + "," + CsvNumber(centre.x(), 3) + "," + CsvNumber(centre.y(), 3) + "," + CsvNumber(centre.z(), 3) + ",";
+    text += tables::CsvText(photo.name) + "," + tables::CsvNumber(centre.x(), 3) + "," + tables::CsvNumber(centre.y(), 3) + "," +
+            tables::CsvNumber(centre.z(), 3) + ",";
     if (survey.georeferenced) {
       const geo::Geodetic position = frame.GeodeticFromEnu(centre);
-      text += CsvNumber(position.latitude_deg, 9) + "," + CsvNumber(position.longitude_deg, 9) + "," + CsvNumber(position.height_m, 3) + ",";
+      text += tables::CsvNumber(position.latitude_deg, 9) + "," + tables::CsvNumber(position.longitude_deg, 9) + "," +
+              tables::CsvNumber(position.height_m, 3) + ",";
     } else {
       text += ",,,";
     }
-    text += photo.gps
-                ? CsvNumber(photo.gps->latitude_deg, 9) + "," + CsvNumber(photo.gps->longitude_deg, 9) + "," + CsvNumber(photo.gps->height_m, 3) + ","
-                : ",,,";
+    text += photo.gps ? tables::CsvNumber(photo.gps->latitude_deg, 9) + "," + tables::CsvNumber(photo.gps->longitude_deg, 9) + "," +
+                            tables::CsvNumber(photo.gps->height_m, 3) + ","
+                      : ",,,";
     for (const Eigen::Vector3d& v : {photo.gps_correction_m, georeference.residual_m[i]}) {
-      for (const double value : {v.x(), v.y(), v.z()}) text += CsvNumber(value, 3) + ",";
+      for (const double value : {v.x(), v.y(), v.z()}) text += tables::CsvNumber(value, 3) + ",";
     }
-    text += CsvNumber(photo.gps_residual_m, 3) + "," + (photo.gps_inlier ? "1" : "0") + "," + std::to_string(photo.flight) + "," +
-            CsvNumber(photo.agl_m, 2) + ",";
-    text += (photo.relative_altitude_m ? CsvNumber(*photo.relative_altitude_m, 2) : "") + "," + (photo.is_test ? "1" : "0") + "\n";
+    text += tables::CsvNumber(photo.gps_residual_m, 3) + "," + (photo.gps_inlier ? "1" : "0") + "," + std::to_string(photo.flight) + "," +
+            tables::CsvNumber(photo.agl_m, 2) + ",";
+    text += (photo.relative_altitude_m ? tables::CsvNumber(*photo.relative_altitude_m, 2) : "") + "," + (photo.is_test ? "1" : "0") + "\n";
   }
   base::WriteFileAtomically(file, text);
 }

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "core/survey/survey.h"
-#include "prepare/georeference.h"
+#include "prepare/georeference/georeference.h"
 
 namespace skyquilt::prepare {
 
 void LogSummary(const survey::Survey& survey);
 // CSV, one line per photo: name, ENU position, fitted and tagged latitude / longitude / height, what the fit adds to the tag, residual, inlier,
 // flight, height above ground, RelativeAltitude, test. Unknown values are empty. Throws base::InputError when the file cannot be written.
-void WriteResidualTable(const survey::Survey& survey, const Georeference& georeference, const std::filesystem::path& file);
+void WriteResidualTable(const survey::Survey& survey, const georeference::Georeference& georeference, const std::filesystem::path& file);
 // GeoJSON points (RFC 7946). The survey must be geo-referenced. Throws base::InputError when the file cannot be written.
 void WriteCameraMap(const survey::Survey& survey, const std::filesystem::path& file);
 

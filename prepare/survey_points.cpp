@@ -7,7 +7,7 @@
 #include "core/base/log.h"
 #include "core/base/mix_bits.h"
 #include "core/survey/training_points.h"
-#include "prepare/sparse_cloud.h"
+#include "prepare/georeference/sparse_cloud.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -44,7 +44,7 @@ void FillPoints(const survey::ColmapModel& model, const geo::Similarity3d& enu_f
     base::LogInfo("{} of {} sparse points are not used, because fewer than two training photos observed them", model.points.size() - of_model.size(),
                   model.points.size());
   }
-  const std::vector<size_t> good = FilterSparsePoints(points);
+  const std::vector<size_t> good = georeference::FilterSparsePoints(points);
   for (size_t i = 0; i < good.size(); ++i) {
     const survey::ColmapPoint& point = model.points[of_model[good[i]]];
     const bool kept = IsKeptPoint(point.id, keep_every);

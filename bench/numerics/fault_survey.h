@@ -9,8 +9,8 @@
 #include "core/geo/geodetic.h"
 #include "core/geo/place_accuracy.h"
 #include "core/geo/transform.h"
-#include "prepare/georeference.h"
-#include "prepare/station.h"
+#include "prepare/georeference/georeference.h"
+#include "prepare/input/station.h"
 #include "simulate/simulate_options.h"
 
 namespace skyquilt::bench {
@@ -18,7 +18,7 @@ namespace skyquilt::bench {
 struct FaultSurvey {
   geo::Geodetic origin;  // of the true ENU frame
   geo::Similarity3d enu_from_model;
-  std::vector<prepare::Station> stations;
+  std::vector<prepare::input::Station> stations;
   std::vector<Eigen::Vector3d> points;  // on ground, roofs and trees, in the model's frame
 };
 
@@ -36,6 +36,6 @@ struct PlaceErrors {
   double lag_s = 0.0;
   std::vector<std::string> problems = {};  // codes
 };
-PlaceErrors FindPlace(const FaultSurvey& survey, const prepare::PrepareOptions& options = {});
+PlaceErrors FindPlace(const FaultSurvey& survey, const prepare::georeference::PlaceOptions& options = {});
 
 }  // namespace skyquilt::bench

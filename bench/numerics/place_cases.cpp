@@ -11,7 +11,7 @@
 namespace skyquilt::bench {
 namespace {
 
-constexpr double kMountingTilt_deg = prepare::kCameraCommon_deg;  // as the geo-reference assumes
+constexpr double kMountingTilt_deg = prepare::georeference::kCameraCommon_deg;  // as the geo-reference assumes
 
 // A town in which the tags have a noise of 2 m and gimbal angles with the errors of a good drone.
 simulate::SimulateOptions Town() {

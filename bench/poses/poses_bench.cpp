@@ -14,7 +14,7 @@
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_model.h"
 #include "prepare/input/list_files.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/colmap_run.h"
 #include "simulate/simulate.h"
 #include "simulate/world.h"
@@ -83,18 +83,19 @@ PosesRow FindAndJudge(const fs::path& folder, const TrueSet& truth, const std::s
   row.way = way;
   row.n_files = truth.photos.size();
   row.score.n_photos = truth.CountOurs();
-  prepare::PoseOptions poses = options.poses;
+  prepare::poses::PoseOptions poses = options.poses;
   poses.fast = way == kFastWay;
   const fs::path images = folder / "images";
-  const prepare::ColmapJob job{.photo_root = images, .masks = {}, .folder = folder / way};
+  const prepare::poses::ColmapJob job{.photo_root = images, .masks = {}, .folder = folder / way};
   const auto start = Clock::now();
   try {
-    const prepare::PhotoSet photos = prepare::ReadPhotos(images, prepare::TakenNames(prepare::ListInput(images, {}, threads)), threads);
-    const fs::path model = prepare::RunColmap(job, photos.usable, poses, threads);
+    const prepare::input::PhotoSet photos =
+        prepare::input::ReadPhotos(images, prepare::input::TakenNames(prepare::input::ListInput(images, {}, threads)), threads);
+    const fs::path model = prepare::poses::RunColmap(job, photos.usable, poses, threads);
     row.seconds = SecondsSince(start);
     row.used = UsedWay(job.folder, model, poses.fast);
     row.score = JudgePoses(truth, survey::ReadColmapModel(model));
-  } catch (const prepare::NoModelError& error) {
+  } catch (const prepare::poses::NoModelError& error) {
     row.seconds = SecondsSince(start);
     row.failure = error.what();
   }

@@ -67,7 +67,7 @@ struct PosesBenchOptions {
   std::vector<std::string> ways;       // kFastWay, kColmapWay; empty: both
   simulate::SimulateOptions simulate;  // of the place of all sets but solar_farm
   std::optional<std::string> place;    // its name; nothing: simulate.place, or a city when --photos asks for more than the town has
-  prepare::PoseOptions poses;          // of both ways, but for `fast`
+  prepare::poses::PoseOptions poses;   // of both ways, but for `fast`
   int threads = 0;                     // <= 0: every core
   bool keep = false;                   // the folder "poses_work"
   // Called after every row with the rows so far.

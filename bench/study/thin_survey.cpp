@@ -7,7 +7,7 @@
 #include "core/base/log.h"
 #include "core/base/thread_pool.h"
 #include "core/survey/training_points.h"
-#include "prepare/sparse_cloud.h"
+#include "prepare/georeference/sparse_cloud.h"
 
 namespace skyquilt::bench {
 
@@ -35,7 +35,7 @@ void KeepPhotos(survey::Survey& survey, const std::vector<bool>& keep) {
   base::LogInfo("{} of {} photos stay; without the others {} sparse points are unknown and {} remain", survey.photos.size(), keep.size(), removed,
                 survey.points.size() + survey.kept_points.size());
   base::ThreadPool threads;
-  prepare::MeasureAgl(survey, threads);
+  prepare::georeference::MeasureAgl(survey, threads);
 }
 
 survey::Survey ThinSurvey(survey::Survey survey, const Variant& variant) {

@@ -41,13 +41,13 @@ int RankTasks::threads() {
   return most;
 }
 
-void RankTasks::Run(std::span<const prepare::PoseTask> tasks, const prepare::TaskProgress& on_progress) {
+void RankTasks::Run(std::span<const prepare::poses::PoseTask> tasks, const prepare::poses::TaskProgress& on_progress) {
   size_t next = 0, n_done = 0;
   std::map<size_t, int> rank_of;  // by number of a task that a rank has
   const auto hand_out = [&](int rank) {
     if (next == tasks.size()) return;
     rank_of.emplace(next_number_, rank);
-    comm_.Send(rank, kTagTask, TaskMessage(next_number_++, prepare::ToText(tasks[next++])));
+    comm_.Send(rank, kTagTask, TaskMessage(next_number_++, prepare::poses::ToText(tasks[next++])));
   };
   for (const GroupMember& member : Members()) hand_out(member.rank);
   while (n_done < tasks.size()) {

@@ -17,7 +17,7 @@ namespace skyquilt::coordinator {
 
 // Rank 0's side. The other ranks are called when they are first needed, and sent back by the destructor; a task that one of them still runs then is
 // stopped.
-class RankTasks : public prepare::RemoteTasks {
+class RankTasks : public prepare::poses::RemoteTasks {
  public:
   // folder: of the project; all ranks must see the same one.
   RankTasks(comm::Communicator& comm, const RunOptions& options, std::filesystem::path folder, bool verbose, bool quiet);
@@ -26,7 +26,7 @@ class RankTasks : public prepare::RemoteTasks {
   int size() override;
   int threads() override;
   // After an exception of a task no more tasks are handed out, and the exception is thrown with rank and host in it.
-  void Run(std::span<const prepare::PoseTask> tasks, const prepare::TaskProgress& on_progress) override;
+  void Run(std::span<const prepare::poses::PoseTask> tasks, const prepare::poses::TaskProgress& on_progress) override;
 
  private:
   const std::vector<GroupMember>& Members();

@@ -53,12 +53,12 @@ class TaskReporter {
 };
 
 // False when rank 0 has ended the search in the meantime.
-bool RunTask(comm::Communicator& comm, const std::string& bytes, prepare::TaskRunner& runner) {
+bool RunTask(comm::Communicator& comm, const std::string& bytes, prepare::poses::TaskRunner& runner) {
   const auto [number, text] = SplitTaskMessage(bytes);
   TaskReporter reporter(comm, number);
   std::string failure;
   try {
-    runner.Run(prepare::TaskFromText(text), [&reporter](double more) { reporter(more); });
+    runner.Run(prepare::poses::TaskFromText(text), [&reporter](double more) { reporter(more); });
   } catch (...) {
     failure = base::JsonText(ToJson(CurrentFailure()));
   }
@@ -85,7 +85,7 @@ void ServeTasks(comm::Communicator& comm, const std::string& setup_text) {
     options.threads = setup.at("threads").get<int>();
     hello["threads"] = options.UsableThreads();
     const int threads = std::stoi(Register(comm, hello, kTagThreads));
-    prepare::TaskRunner runner(threads, "colmap_rank_" + std::to_string(comm.rank()) + ".log");
+    prepare::poses::TaskRunner runner(threads, "colmap_rank_" + std::to_string(comm.rank()) + ".log");
     while (true) {
       const comm::Message message = WaitForMessage(comm);
       if (message.tag == kTagDone) return;

@@ -97,7 +97,8 @@ std::string PhotosIdentity(const std::filesystem::path& folder, const std::files
     }
     // Another project there may still be worked on, and gives no photos.
     std::error_code ignored;
-    if (it->is_directory(ignored) && !prepare::ProjectKind(it->path()).empty() && !std::filesystem::is_directory(it->path() / "images", ignored)) {
+    if (it->is_directory(ignored) && !prepare::input::ProjectKind(it->path()).empty() &&
+        !std::filesystem::is_directory(it->path() / "images", ignored)) {
       it.disable_recursion_pending();
       continue;
     }

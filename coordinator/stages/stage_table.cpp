@@ -8,8 +8,8 @@
 #include "core/base/log.h"
 #include "core/checkpoint/archive.h"
 #include "core/scene/field_file.h"
-#include "prepare/input/masks.h"
-#include "prepare/photo_positions.h"
+#include "prepare/georeference/tags/photo_positions.h"
+#include "prepare/input/masks/masks.h"
 #include "tour/export/staged_folder.h"
 
 namespace skyquilt::coordinator {
@@ -42,7 +42,7 @@ std::string SurveyIdentity(const Project& project) {
 // Of masks that were found beside the photo folder, images/; empty when there are none. Those in the folder are among its pictures.
 std::string MasksIdentity(const Pipeline& pipeline) {
   if (!pipeline.settings.prepare.masks.empty() || !std::filesystem::is_directory(pipeline.photos)) return "";
-  const prepare::MaskPlaces places = prepare::FindMaskPlaces(std::filesystem::canonical(pipeline.photos), "", {});
+  const prepare::input::MaskPlaces places = prepare::input::FindMaskPlaces(std::filesystem::canonical(pipeline.photos), "", {});
   std::string identity;
   for (const std::filesystem::path& folder : places.folders) identity += PhotosIdentity(folder, pipeline.project.folder);
   for (const std::filesystem::path& file : places.shared) identity += FileIdentity(file);
@@ -58,7 +58,7 @@ FlatOptions PrepareInputs(const Pipeline& pipeline) {
   const std::filesystem::path images = pipeline.photos / "images";
   std::string positions;
   for (const std::filesystem::path& file :
-       prepare::PositionFiles(std::filesystem::is_directory(images) ? images : pipeline.photos, pipeline.settings.prepare.geo_file)) {
+       prepare::georeference::PositionFiles(std::filesystem::is_directory(images) ? images : pipeline.photos, pipeline.settings.prepare.geo_file)) {
     positions += FileIdentity(file);
   }
   if (!positions.empty()) inputs["positions"] = base::HashHex(positions);

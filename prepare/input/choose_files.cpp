@@ -12,7 +12,7 @@
 #include "prepare/input/glob.h"
 #include "prepare/input/list_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 // Fewer photos in colour than one for so many bands are not what the flight was for.
@@ -369,4 +369,4 @@ std::vector<InputFile> ChooseFiles(const std::vector<FoundFile>& found, const st
   return chooser.Files();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

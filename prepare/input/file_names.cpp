@@ -8,7 +8,7 @@
 
 #include "core/base/text.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 bool IsDigit(char c) {
@@ -173,4 +173,4 @@ bool IsMaskFolder(const std::string& folder_name) {
   return IsOneOf(folder_name, {"masks", "mask"});
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

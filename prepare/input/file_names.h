@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 enum class FileGroup {
   kPicture,       // jpg, jpeg, png, tif, tiff: can be a photo
@@ -56,4 +56,4 @@ bool IsSystemFolder(const std::string& folder_name);
 bool IsThumbnailFolder(const std::string& folder_name);
 bool IsMaskFolder(const std::string& folder_name);  // masks, mask
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

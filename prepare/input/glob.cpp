@@ -6,7 +6,7 @@
 #include "core/base/errors.h"
 #include "core/base/text.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 // Lower case from the last '.' of the file name on.
@@ -64,4 +64,4 @@ bool MatchesAny(const std::vector<std::string>& patterns, std::string_view name)
   return std::any_of(patterns.begin(), patterns.end(), [name](const std::string& pattern) { return MatchesPattern(pattern, name); });
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

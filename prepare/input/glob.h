@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // Commas separate patterns; spaces around them do not count. Throws base::UsageError when there is nothing between commas at all.
 std::vector<std::string> ParsePatterns(const std::string& text);
@@ -17,4 +17,4 @@ std::vector<std::string> ParsePatterns(const std::string& text);
 bool MatchesPattern(std::string_view pattern, std::string_view name);
 bool MatchesAny(const std::vector<std::string>& patterns, std::string_view name);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -13,7 +13,7 @@
 #include "prepare/models/metashape_xml.h"
 #include "prepare/models/read_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,16 +34,16 @@ bool HoldsPhotosDirectly(const fs::path& folder) {
 }
 
 std::string UnusedModelText(const fs::path& model) {
-  switch (FindModel(model).format) {
-    case ModelFormat::kColmap:
+  switch (models::FindModel(model).format) {
+    case models::ModelFormat::kColmap:
       return "a COLMAP model";
-    case ModelFormat::kTransforms:
+    case models::ModelFormat::kTransforms:
       return "a transforms.json (nerfstudio)";
-    case ModelFormat::kOpensfm:
+    case models::ModelFormat::kOpensfm:
       return "a reconstruction.json (OpenSfM, OpenDroneMap)";
-    case ModelFormat::kMetashape:
+    case models::ModelFormat::kMetashape:
       return "cameras of Metashape";
-    case ModelFormat::kOpf:
+    case models::ModelFormat::kOpf:
       break;
   }
   return "a Pix4D project";
@@ -101,7 +101,7 @@ std::vector<fs::path> ModelsIn(const fs::path& folder) {
     std::error_code no_file;
     if (!entry->is_regular_file(no_file)) continue;
     const std::string extension = base::LowerCase(entry->path().extension().string());
-    if (extension == ".opf" || (extension == ".xml" && LooksLikeMetashape(entry->path()))) others.push_back(entry->path());
+    if (extension == ".opf" || (extension == ".xml" && models::LooksLikeMetashape(entry->path()))) others.push_back(entry->path());
   }
   std::sort(others.begin(), others.end());
   models.insert(models.end(), others.begin(), others.end());
@@ -124,9 +124,9 @@ InputFolder FindInputs(const fs::path& photos, const fs::path& model, const std:
   }
   std::vector<fs::path> transforms;
   if (!model.empty()) {
-    const ModelFiles files = FindModel(model);  // before hours of work
+    const models::ModelFiles files = models::FindModel(model);  // before hours of work
     found.model = fs::canonical(files.path);
-    if (files.format == ModelFormat::kTransforms && fs::is_regular_file(found.model)) transforms.push_back(found.model);
+    if (files.format == models::ModelFormat::kTransforms && fs::is_regular_file(found.model)) transforms.push_back(found.model);
   } else if (simulated) {
     found.model = folder / "sparse" / "0";
   } else {
@@ -141,4 +141,4 @@ InputFolder FindInputs(const fs::path& photos, const fs::path& model, const std:
   return found;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -9,10 +9,10 @@
 
 #include "core/base/file.h"
 #include "core/base/text.h"
-#include "prepare/csv_field.h"
 #include "prepare/input/file_names.h"
+#include "prepare/tables/csv_field.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 // One and several of a kind; empty for those that are not counted.
@@ -60,8 +60,8 @@ void WriteInputTable(const std::vector<InputFile>& files, const std::filesystem:
   std::string text = "file,taken,kind,reason,shot,mask,width,height\n";
   for (const InputFile& one : files) {
     const auto pixels = [](int size) { return size > 0 ? std::to_string(size) : std::string(); };
-    text += CsvText(one.name) + (one.Taken() ? ",yes," : ",no,") + KindName(one.kind) + "," + CsvText(one.reason) + "," + CsvText(one.shot) + "," +
-            CsvText(one.mask) + "," + pixels(one.width) + "," + pixels(one.height) + "\n";
+    text += tables::CsvText(one.name) + (one.Taken() ? ",yes," : ",no,") + KindName(one.kind) + "," + tables::CsvText(one.reason) + "," +
+            tables::CsvText(one.shot) + "," + tables::CsvText(one.mask) + "," + pixels(one.width) + "," + pixels(one.height) + "\n";
   }
   base::WriteFileAtomically(file, text);
 }
@@ -118,4 +118,4 @@ std::vector<std::string> InputWarnings(const std::filesystem::path& root, const 
   return warnings;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -7,7 +7,7 @@
 
 #include "prepare/input/list_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // CSV: file, taken (yes or no), kind, reason, shot, mask, width, height; empty where not known. Throws base::InputError.
 void WriteInputTable(const std::vector<InputFile>& files, const std::filesystem::path& file);
@@ -21,4 +21,4 @@ std::string SummaryText(const std::vector<InputFile>& files, const std::filesyst
 // Warnings: pictures that could be photos after a conversion, one band for all, and other projects, each with what to do.
 std::vector<std::string> InputWarnings(const std::filesystem::path& root, const std::vector<InputFile>& files);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -10,7 +10,7 @@
 #include "prepare/input/glob.h"
 #include "prepare/input/input_table.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -122,4 +122,4 @@ bool LooksLikePhoto(const fs::path& file) {
   return !IsHiddenName(file.filename().string()) && GroupOf(file.filename().string()) == FileGroup::kPicture;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -9,7 +9,7 @@
 #include "prepare/input/picture_header.h"
 #include "prepare/input/walk_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 enum class FileKind {
   kPhoto,      // taken; all others are left out
@@ -70,4 +70,4 @@ std::vector<std::string> TakenNames(const std::vector<InputFile>& files);
 // Whether a file can be a photo by its extension and is not hidden. Nothing is read.
 bool LooksLikePhoto(const std::filesystem::path& file);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

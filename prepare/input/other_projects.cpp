@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,4 +88,4 @@ std::string ResultFolder(const std::string& name, const std::set<std::string>& s
   return "";
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

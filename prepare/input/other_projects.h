@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // As in "a Skyquilt project"; empty when the folder is none: Skyquilt, OpenDroneMap, OpenSfM, COLMAP, nerfstudio, Pix4D. Looks for files and folders,
 // and reads none.
@@ -15,4 +15,4 @@ std::string ProjectKind(const std::filesystem::path& folder);
 // parent, which may be a project itself (`parent_kind`, by ProjectKind).
 std::string ResultFolder(const std::string& name, const std::set<std::string>& siblings, const std::string& parent_kind);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

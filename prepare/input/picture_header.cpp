@@ -9,7 +9,7 @@
 #include "core/base/memory_map.h"
 #include "core/image/jpeg_structure.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 using Bytes = std::span<const uint8_t>;
@@ -140,4 +140,4 @@ PictureHeader ReadPictureHeader(const std::filesystem::path& file) {
   }
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

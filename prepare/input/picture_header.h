@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 enum class PictureFormat { kUnknown, kJpeg, kPng, kTiff };
 
@@ -23,4 +23,4 @@ PictureHeader ParsePictureHeader(std::span<const uint8_t> bytes);
 // Unknown for a file that cannot be read.
 PictureHeader ReadPictureHeader(const std::filesystem::path& file);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

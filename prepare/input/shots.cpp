@@ -7,7 +7,7 @@
 
 #include "core/geo/ecef.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 constexpr double kSamePlace_m = 0.5, kSameDirection_deg = 2.0;
@@ -82,4 +82,4 @@ size_t CountShots(const std::vector<size_t>& shots) {
   return n;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 // Index of the first photo of each photo's shot. Neighbours in the list are of one shot when they are in one folder, of one camera and size, and
 // taken at one place (0.5 m, heights included) in one direction (2 degrees) within two seconds after the one before, with exposures that differ by a
@@ -17,4 +17,4 @@ std::vector<size_t> FindShots(const std::vector<PhotoFile>& photos);
 // Of a result of FindShots.
 size_t CountShots(const std::vector<size_t>& shots);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

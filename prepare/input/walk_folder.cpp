@@ -7,7 +7,7 @@
 #include "prepare/input/file_names.h"
 #include "prepare/input/other_projects.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ std::vector<FoundFile> WalkFolder(const fs::path& root, const std::vector<fs::pa
   return walker.Sorted();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

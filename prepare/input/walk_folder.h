@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 
 enum class FoundIn {
   kPlainFolder,      // may hold photos
@@ -31,4 +31,4 @@ struct FoundFile {
 std::vector<FoundFile> WalkFolder(const std::filesystem::path& root, const std::vector<std::filesystem::path>& skip,
                                   const std::filesystem::path& masks);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -6,7 +6,7 @@
 #include "core/base/errors.h"
 #include "core/image/image.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 namespace fs = std::filesystem;
 
@@ -99,4 +99,4 @@ camera::Camera FisheyeCamera(int width, int height, const Eigen::Vector2d& focal
   return {camera::CameraModel::kOpencvFisheye, width, height, {focal.x(), focal.y(), centre.x(), centre.y(), k[0], k[1], k[2], k[3]}};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

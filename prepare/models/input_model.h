@@ -13,7 +13,7 @@
 #include "core/survey/colmap_model.h"
 #include "prepare/models/photo_names.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 enum class ModelFormat { kColmap, kTransforms, kOpensfm, kMetashape, kOpf };
 
@@ -74,4 +74,4 @@ camera::Camera PerspectiveCamera(int width, int height, const Eigen::Vector2d& f
                                  double p1, double p2);
 camera::Camera FisheyeCamera(int width, int height, const Eigen::Vector2d& focal, const Eigen::Vector2d& centre, const std::array<double, 4>& k);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

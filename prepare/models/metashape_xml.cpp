@@ -14,7 +14,7 @@
 #include "core/base/log.h"
 #include "core/geo/ecef.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 namespace fs = std::filesystem;
@@ -248,4 +248,4 @@ bool LooksLikeMetashape(const fs::path& file) {
   return start.find("<document") != std::string_view::npos && start.find("<chunk") != std::string_view::npos;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -15,11 +15,11 @@
 
 #include "prepare/models/input_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 // Reads the first chunk with aligned cameras, of it the component with most; a warning names what is left out. Throws base::InputError.
 InputModel ReadMetashape(const std::filesystem::path& file, const ModelPhotos& photos);
 // True when the file is XML whose root is Metashape's <document>.
 bool LooksLikeMetashape(const std::filesystem::path& file);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

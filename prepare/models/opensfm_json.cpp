@@ -14,7 +14,7 @@
 #include "core/base/json_document.h"
 #include "core/base/log.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 using base::JsonDocument;
@@ -171,4 +171,4 @@ InputModel ReadOpensfm(const fs::path& file, const ModelPhotos& photos) {
   return model;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

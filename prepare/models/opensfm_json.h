@@ -15,9 +15,9 @@
 
 #include "prepare/models/input_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 // Reads the reconstruction with most photos; others are named in a warning. Throws base::InputError.
 InputModel ReadOpensfm(const std::filesystem::path& file, const ModelPhotos& photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

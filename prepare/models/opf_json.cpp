@@ -16,7 +16,7 @@
 #include "core/linear/linear.h"
 #include "prepare/models/opf_points.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 using base::JsonDocument;
@@ -226,4 +226,4 @@ InputModel ReadOpf(const fs::path& file, const ModelPhotos& photos) {
   return model;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -15,9 +15,9 @@
 
 #include "prepare/models/input_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 // Throws base::InputError.
 InputModel ReadOpf(const std::filesystem::path& project, const ModelPhotos& photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -8,7 +8,7 @@
 #include "core/base/file.h"
 #include "core/base/json_document.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 using base::JsonDocument;
@@ -159,4 +159,4 @@ void AddOpfPoints(const fs::path& file, const std::unordered_map<uint64_t, uint3
   }
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

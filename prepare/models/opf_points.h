@@ -8,9 +8,9 @@
 
 #include "prepare/models/input_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 // image_of_camera: our image ids by the ids of OPF's cameras; matches of other cameras are left out. Throws base::InputError.
 void AddOpfPoints(const std::filesystem::path& gltf, const std::unordered_map<uint64_t, uint32_t>& image_of_camera, SfmBuilder& builder);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

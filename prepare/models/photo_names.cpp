@@ -5,7 +5,7 @@
 
 #include "core/base/text.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 namespace fs = std::filesystem;
 
@@ -73,4 +73,4 @@ size_t PhotoNames::CommonParts(const std::string& label, size_t index) const {
   return n;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

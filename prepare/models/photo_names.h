@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 class PhotoNames {
  public:
@@ -34,4 +34,4 @@ class PhotoNames {
   std::map<std::string, std::vector<size_t>> by_file_name_, by_stem_;  // keys in lower case
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -13,7 +13,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 constexpr const char* kPlyFix = "Export the points again as PLY with x, y and z, or remove the entry ply_file_path";
@@ -188,4 +188,4 @@ std::vector<PlyPoint> ReadPlyPoints(const std::filesystem::path& file) {
   return PlyReader(file).Read();
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 struct PlyPoint {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
@@ -18,4 +18,4 @@ struct PlyPoint {
 // Throws base::InputError: not such a file, fewer points than the header says, a coordinate that is not finite. Names the line in ASCII and header.
 std::vector<PlyPoint> ReadPlyPoints(const std::filesystem::path& file);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -13,7 +13,7 @@
 #include "prepare/models/opf_json.h"
 #include "prepare/models/transforms_json.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 using base::JsonDocument;
@@ -131,4 +131,4 @@ InputModel ReadModel(const fs::path& path, const ModelPhotos& photos) {
   return model;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

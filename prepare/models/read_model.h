@@ -5,7 +5,7 @@
 
 #include "prepare/models/input_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 // A model's files, as found below a path.
 struct ModelFiles {
@@ -20,4 +20,4 @@ ModelFiles FindModel(const std::filesystem::path& path);
 // Throws base::InputError for a file that is damaged or not supported, with the line where the format has lines, and how to fix it.
 InputModel ReadModel(const std::filesystem::path& path, const ModelPhotos& photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -8,7 +8,7 @@
 #include "core/base/json_document.h"
 #include "prepare/models/ply_points.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 using base::JsonDocument;
@@ -131,4 +131,4 @@ InputModel ReadTransforms(const std::vector<TransformsFile>& files, const ModelP
   return model;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -15,7 +15,7 @@
 
 #include "prepare/models/input_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 
 struct TransformsFile {
   std::filesystem::path file;
@@ -25,4 +25,4 @@ struct TransformsFile {
 // Reads the frames of all files as one model. val_filenames and test_filenames of nerfstudio are held out too. Throws base::InputError.
 InputModel ReadTransforms(const std::vector<TransformsFile>& files, const ModelPhotos& photos);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -6,7 +6,7 @@
 #include "core/base/log.h"
 #include "prepare/poses/retrieval.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // Looks count less than places: pairs by place come first.
@@ -14,7 +14,7 @@ constexpr double kCostOfLooks = 1e15;
 
 }  // namespace
 
-PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& rules, uint64_t seed, FeatureStore& features,
+PhotoPairs ChoosePairs(const std::vector<input::PhotoFile>& photos, const PairRules& rules, uint64_t seed, FeatureStore& features,
                        base::ThreadPool& threads) {
   const size_t n = photos.size();
   if (n < rules.all_below) {
@@ -65,4 +65,4 @@ PhotoPairs ChoosePairs(const std::vector<PhotoFile>& photos, const PairRules& ru
   return pairs;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -11,7 +11,7 @@
 #include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -41,7 +41,7 @@ bool IsPlain(const std::string& name) {
 
 }  // namespace
 
-void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
+void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const std::vector<input::PhotoFile>& photos, const PoseOptions& options) {
   // COLMAP knows the positions in EXIF tags only, not those of our position files.
   const size_t n_tagged = survey::ColmapDatabase(job.Database()).CountPlaced();
   const bool spatial = photos.size() >= kMinSpatialPhotos && 10 * n_tagged >= 9 * photos.size();
@@ -146,4 +146,4 @@ FoundModel LargestModel(const ColmapJob& job) {
   return best;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

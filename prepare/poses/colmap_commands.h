@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <vector>
 
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/colmap_step.h"
 #include "prepare/poses/pose_options.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // What all commands need. `fast`: FastColmapFlags instead of COLMAP's defaults. `hold_focal`: the mapper keeps the focal lengths of the tags.
 struct ColmapSettings {
@@ -22,7 +22,7 @@ struct ColmapSettings {
 
 // COLMAP's own matching and verification: GPS neighbours when there are at least 60 photos and at least nine tenths of them have GPS in their EXIF
 // tags, otherwise all pairs.
-void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options);
+void MatchByColmap(const ColmapJob& job, const ColmapSettings& settings, const std::vector<input::PhotoFile>& photos, const PoseOptions& options);
 
 // COLMAP's SiftMatching.min_num_inliers: it keeps no geometry of fewer matches.
 constexpr size_t kMinVerified = 15;
@@ -41,4 +41,4 @@ struct FoundModel {
 // The model with the most photos; others are mentioned in a warning. Throws base::InputError when there is none.
 FoundModel LargestModel(const ColmapJob& job);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -19,7 +19,7 @@
 #include "prepare/poses/loose_photos.h"
 #include "prepare/poses/seed_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,10 +40,10 @@ struct StepHashes {
 };
 
 // Tags that pairs depend on; positions may come from another file than the photo.
-std::string PairInputs(const std::vector<PhotoFile>& photos, const PairRules& rules) {
+std::string PairInputs(const std::vector<input::PhotoFile>& photos, const PairRules& rules) {
   std::string text = fmt::format("pairs {} {} {} {} {} {} {} {}\n", rules.all_below, rules.neighbors, rules.sectors, rules.sector_reach,
                                  rules.position_neighbors, rules.similar, rules.name_neighbors, rules.links);
-  for (const PhotoFile& photo : photos) {
+  for (const input::PhotoFile& photo : photos) {
     const survey::PhotoTags& tags = photo.tags;
     text += tags.gps ? fmt::format("{:.9f} {:.9f}", tags.gps->latitude_deg, tags.gps->longitude_deg) : "-";
     text += " " + TagText(tags.gimbal_pitch_deg) + " " + TagText(tags.gimbal_yaw_deg) + " " + TagText(tags.relative_altitude_m) + "\n";
@@ -51,7 +51,7 @@ std::string PairInputs(const std::vector<PhotoFile>& photos, const PairRules& ru
   return text;
 }
 
-StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
+StepHashes HashSteps(const Attempt& attempt, const std::vector<input::PhotoFile>& photos, const PoseOptions& options) {
   std::string text = FeatureInputs(attempt.job, attempt.settings, photos, options);
   StepHashes hashes;
   const FastColmapFlags flags;
@@ -69,7 +69,7 @@ StepHashes HashSteps(const Attempt& attempt, const std::vector<PhotoFile>& photo
 }
 
 // Everything but the model.
-void FillDatabaseOf(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+void FillDatabaseOf(const Attempt& attempt, const StepHashes& hashes, const std::vector<input::PhotoFile>& photos, const PoseOptions& options,
                     base::ThreadPool& threads, RemoteTasks* ranks) {
   const ColmapJob& job = attempt.job;
   base::LogInfo("running COLMAP on {} photos; its log is {}", photos.size(), job.Log().string());
@@ -78,7 +78,7 @@ void FillDatabaseOf(const Attempt& attempt, const StepHashes& hashes, const std:
     RunStep(job, {"matches", hashes.matches}, {kModelStep}, [&] { MatchByColmap(job, attempt.settings, photos, options); });
     return;
   }
-  const auto choose = [&](const std::vector<PhotoFile>& found, FeatureStore& features) {
+  const auto choose = [&](const std::vector<input::PhotoFile>& found, FeatureStore& features) {
     return ChoosePairs(found, *attempt.pairs, static_cast<uint64_t>(options.seed), features, threads);
   };
   FillDatabase(job, attempt.settings, photos, options, {hashes.features, hashes.matches}, choose, threads, ranks);
@@ -103,7 +103,7 @@ FoundModel WithoutLoosePhotos(const ColmapJob& job, const FoundModel& found) {
   return {folder, model.images.size()};
 }
 
-FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std::vector<input::PhotoFile>& photos, const PoseOptions& options,
                      base::ThreadPool& threads) {
   const ColmapJob& job = attempt.job;
   const ColmapStep mapper{attempt.settings.hold_focal ? kHeldFocalStep : kModelStep, hashes.model};
@@ -134,7 +134,8 @@ struct Outcome {
   }
 };
 
-Outcome Try(const Attempt& attempt, const std::vector<PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads, RemoteTasks* ranks) {
+Outcome Try(const Attempt& attempt, const std::vector<input::PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads,
+            RemoteTasks* ranks) {
   const StepHashes hashes = HashSteps(attempt, photos, options);
   FillDatabaseOf(attempt, hashes, photos, options, threads, ranks);
   Outcome outcome;
@@ -174,7 +175,7 @@ fs::path ChooseModel(const std::vector<Outcome>& outcomes) {
 
 }  // namespace
 
-fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads,
+fs::path RunColmap(const ColmapJob& job, const std::vector<input::PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads,
                    RemoteTasks* ranks) {
   const fs::path program = base::FindProgram(options.colmap);
   if (program.empty()) {
@@ -203,4 +204,4 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, c
   return ChooseModel(outcomes);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

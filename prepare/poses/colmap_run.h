@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/colmap_step.h"
 #include "prepare/poses/pose_options.h"
 #include "prepare/poses/pose_task.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // The fast way: features by FastColmapFlags, pairs by ChoosePairs, matches by MatchPairs, verified by COLMAP, poses by SeedModel or else by COLMAP's
 // mapper, without the photos that RemoveLoosePhotos takes out. When that has poses of fewer than kEnoughRegistered of the photos, or focal lengths
@@ -20,7 +20,7 @@ namespace skyquilt::prepare {
 // lengths and more than half as many. Otherwise COLMAP does everything. A warning says when the model has wrong focal lengths all the same. Returns
 // the folder of the model. Throws base::InputError that names the log when a step fails, base::Interrupted when asked to stop (a later call
 // continues). `ranks`: processes that find features and matches; null: this one does, with the same result.
-std::filesystem::path RunColmap(const ColmapJob& job, const std::vector<PhotoFile>& photos, const PoseOptions& options, base::ThreadPool& threads,
-                                RemoteTasks* ranks = nullptr);
+std::filesystem::path RunColmap(const ColmapJob& job, const std::vector<input::PhotoFile>& photos, const PoseOptions& options,
+                                base::ThreadPool& threads, RemoteTasks* ranks = nullptr);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

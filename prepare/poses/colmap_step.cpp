@@ -10,7 +10,7 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ void RunStep(const ColmapJob& job, const ColmapStep& step, const std::vector<std
   MarkDone(job, step);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

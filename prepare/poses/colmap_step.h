@@ -8,7 +8,7 @@
 
 #include "core/base/errors.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 struct ColmapJob {
   std::filesystem::path photo_root;  // names of photos are relative to it
@@ -61,4 +61,4 @@ constexpr const char* kNoModelFix = "The photos may overlap too little or be blu
 constexpr const char* kModelStep = "model";
 constexpr const char* kHeldFocalStep = "model_held_focal";  // with the focal lengths of the tags
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

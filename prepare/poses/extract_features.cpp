@@ -10,7 +10,7 @@
 #include "core/survey/colmap_merge.h"
 #include "prepare/poses/focal_check.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,7 +21,7 @@ fs::path PartsFolder(const ColmapJob& job) {
   return job.folder / "features";
 }
 
-std::string CameraKey(const PhotoFile& photo) {
+std::string CameraKey(const input::PhotoFile& photo) {
   const survey::PhotoTags& tags = photo.tags;
   return std::to_string(photo.width) + "x" + std::to_string(photo.height) + "|" + tags.make + "|" + tags.model + "|" +
          (tags.focal_length_mm ? std::to_string(*tags.focal_length_mm) : "");
@@ -42,10 +42,10 @@ size_t FewFeatures(const PoseOptions& options) {
 }
 
 // The photos of each camera in parts of about the same size.
-std::vector<survey::DatabasePart> SplitPhotos(const ColmapJob& job, const std::vector<PhotoFile>& photos, const std::string& input,
+std::vector<survey::DatabasePart> SplitPhotos(const ColmapJob& job, const std::vector<input::PhotoFile>& photos, const std::string& input,
                                               size_t photos_per_part) {
   std::map<std::string, std::vector<std::string>> groups;
-  for (const PhotoFile& photo : photos) groups[CameraKey(photo)].push_back(photo.name);
+  for (const input::PhotoFile& photo : photos) groups[CameraKey(photo)].push_back(photo.name);
   if (groups.size() > 1) base::LogInfo("{} kinds of photos (by size, camera, focal length): each gets its own camera model", groups.size());
   std::vector<survey::DatabasePart> parts;
   uint32_t camera_id = 1;
@@ -68,7 +68,8 @@ std::vector<survey::DatabasePart> SplitPhotos(const ColmapJob& job, const std::v
 
 }  // namespace
 
-std::string FeatureInputs(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options) {
+std::string FeatureInputs(const ColmapJob& job, const ColmapSettings& settings, const std::vector<input::PhotoFile>& photos,
+                          const PoseOptions& options) {
   std::string text = job.photo_root.string() + "\n" + options.camera_model + "\n" + std::to_string(options.max_image_size) + "\n" +
                      std::to_string(options.max_features) + "\n" + std::to_string(options.seed) + "\n" + std::to_string(options.use_gpu) + "\n";
   const auto add_file = [&text](const fs::path& file) {
@@ -76,7 +77,7 @@ std::string FeatureInputs(const ColmapJob& job, const ColmapSettings& settings, 
     const auto time = fs::last_write_time(file, error);
     text += file.string() + " " + std::to_string(fs::file_size(file, error)) + " " + std::to_string(time.time_since_epoch().count()) + "\n";
   };
-  for (const PhotoFile& photo : photos) {
+  for (const input::PhotoFile& photo : photos) {
     add_file(job.photo_root / photo.name);
     const fs::path mask = job.masks / (photo.name + ".png");
     if (!job.masks.empty() && fs::exists(mask)) add_file(mask);
@@ -93,7 +94,7 @@ size_t PhotosPerPart(size_t n_photos, int n_processes, int n_threads) {
   return std::clamp((n_photos + 2 * processes - 1) / (2 * processes), kFewestPerThread * threads, most);
 }
 
-void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<input::PhotoFile>& photos, const PoseOptions& options,
                      const std::string& input, RemoteTasks* ranks) {
   base::RequireWritableFolder(PartsFolder(job));
   const size_t per_part =
@@ -139,4 +140,4 @@ void RemoveFeatureParts(const ColmapJob& job) {
   fs::remove_all(PartsFolder(job), ignored);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -6,7 +6,7 @@
 
 #include "core/base/errors.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 FeatureStore::FeatureStore(const std::filesystem::path& database, const std::vector<std::string>& names, size_t max_bytes)
     : file_(std::filesystem::absolute(database)), database_(database), max_bytes_(max_bytes) {
@@ -60,4 +60,4 @@ std::vector<uint8_t> FeatureStore::LargestFirst(uint32_t photo) {
   return sorted;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

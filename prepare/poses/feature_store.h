@@ -13,7 +13,7 @@
 #include "core/kernel/descriptors.h"
 #include "core/survey/colmap_database.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // For packed descriptors; about a thousand photos.
 constexpr size_t kFeatureMemory_bytes = size_t{1} << 30U;
@@ -49,4 +49,4 @@ class FeatureStore {
   std::unordered_map<uint32_t, std::list<Kept>::iterator> place_;
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

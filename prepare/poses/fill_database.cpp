@@ -12,19 +12,19 @@
 #include "prepare/poses/match_pairs.h"
 #include "prepare/poses/seed_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 constexpr const char* kOwnMatchesStep = "own_matches";
 constexpr const char* kMatchesStep = "matches";
 constexpr size_t kNamedPhotos = 5;
 
-std::vector<PhotoFile> PhotosInDatabase(const ColmapJob& job, const std::vector<PhotoFile>& photos) {
+std::vector<input::PhotoFile> PhotosInDatabase(const ColmapJob& job, const std::vector<input::PhotoFile>& photos) {
   std::set<std::string> names;
   for (survey::DatabaseImage& image : survey::ColmapDatabase(job.Database()).ReadImages()) names.insert(std::move(image.name));
-  std::vector<PhotoFile> found;
+  std::vector<input::PhotoFile> found;
   std::vector<std::string> missing;
-  for (const PhotoFile& photo : photos) {
+  for (const input::PhotoFile& photo : photos) {
     if (names.contains(photo.name)) {
       found.push_back(photo);
     } else {
@@ -41,7 +41,7 @@ std::vector<PhotoFile> PhotosInDatabase(const ColmapJob& job, const std::vector<
 
 }  // namespace
 
-void FillFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+void FillFeatures(const ColmapJob& job, const ColmapSettings& settings, const std::vector<input::PhotoFile>& photos, const PoseOptions& options,
                   const std::string& hash, RemoteTasks* ranks) {
   base::RequireWritableFolder(job.folder);
   RunStep(job, {"features", hash}, {kOwnMatchesStep, kMatchesStep, kSeededStep, kModelStep, kHeldFocalStep},
@@ -49,15 +49,15 @@ void FillFeatures(const ColmapJob& job, const ColmapSettings& settings, const st
   RemoveFeatureParts(job);
 }
 
-void FillDatabase(const ColmapJob& job, const ColmapSettings& settings, const std::vector<PhotoFile>& photos, const PoseOptions& options,
+void FillDatabase(const ColmapJob& job, const ColmapSettings& settings, const std::vector<input::PhotoFile>& photos, const PoseOptions& options,
                   const DatabaseHashes& hashes, const PairChooser& choose, base::ThreadPool& threads, RemoteTasks* ranks) {
   FillFeatures(job, settings, photos, options, hashes.features, ranks);
   const MatchJob match_job{.folder = job.folder / "matches", .input = hashes.features};
   RunStep(job, {kOwnMatchesStep, hashes.matches}, {kMatchesStep, kSeededStep, kModelStep, kHeldFocalStep}, [&] {
-    const std::vector<PhotoFile> found = PhotosInDatabase(job, photos);
+    const std::vector<input::PhotoFile> found = PhotosInDatabase(job, photos);
     std::vector<std::string> names;
     names.reserve(found.size());
-    for (const PhotoFile& photo : found) names.push_back(photo.name);
+    for (const input::PhotoFile& photo : found) names.push_back(photo.name);
     FeatureStore features(job.Database(), names, kFeatureMemory_bytes);
     MatchPairs(match_job, features, choose(found, features), threads, ranks);
   });
@@ -66,4 +66,4 @@ void FillDatabase(const ColmapJob& job, const ColmapSettings& settings, const st
   RunStep(job, {kMatchesStep, hashes.matches}, {kSeededStep, kModelStep, kHeldFocalStep}, [&] { VerifyMatches(job, settings, options); });
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

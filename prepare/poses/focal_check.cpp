@@ -6,7 +6,7 @@
 
 #include "core/base/log.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 constexpr double kGuessFactor = 1.2;
@@ -39,9 +39,9 @@ std::optional<double> TaggedFocalPx(const survey::PhotoTags& tags, int width, in
   return std::nullopt;
 }
 
-void CorrectFocals(const std::vector<PhotoFile>& photos, survey::ColmapDatabase& database) {
-  std::map<std::string, const PhotoFile*> photo_of_name;
-  for (const PhotoFile& photo : photos) photo_of_name.emplace(photo.name, &photo);
+void CorrectFocals(const std::vector<input::PhotoFile>& photos, survey::ColmapDatabase& database) {
+  std::map<std::string, const input::PhotoFile*> photo_of_name;
+  for (const input::PhotoFile& photo : photos) photo_of_name.emplace(photo.name, &photo);
   struct OfCamera {
     std::vector<double> focals_mm;
     size_t n_photos = 0;
@@ -114,4 +114,4 @@ std::optional<FarFocal> FindFocalFarFrom(const std::map<uint32_t, double>& known
   return far;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -12,9 +12,9 @@
 #include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/exif.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // A focal length is far from the tagged one when it is less than this many times, or more than this many times as long. Tags say the focal length for
 // a film of 35 mm by the width or by the diagonal, which differ by 4 % for usual photos, and in whole millimetres.
@@ -51,10 +51,10 @@ bool AnyFocalMoved(const std::map<uint32_t, double>& from_px, const survey::Colm
 // COLMAP takes the focal length of a camera from the tags of one of its photos, whatever they say. Where that is no lens's (IsPlausibleFocal35), or
 // COLMAP read a picture without tags (PhotoFile::converted), the database gets the focal length that the photos' other tags say, as COLMAP computes
 // it, or COLMAP's guess. A warning names the tag.
-void CorrectFocals(const std::vector<PhotoFile>& photos, survey::ColmapDatabase& database);
+void CorrectFocals(const std::vector<input::PhotoFile>& photos, survey::ColmapDatabase& database);
 
 // Empty when the model can be right. `tagged`: by the camera ids of the model, as COLMAP's database has them before any adjustment; cameras without a
 // tagged focal length are not judged.
 std::optional<FarFocal> FindFarFocal(const survey::ColmapModel& model, const std::map<uint32_t, camera::Camera>& tagged);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

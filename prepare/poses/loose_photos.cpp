@@ -8,7 +8,7 @@
 
 #include "core/base/disjoint_sets.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // Numbers of common points of pairs of photos; the key is the smaller id times 2^32 plus the larger.
@@ -77,4 +77,4 @@ std::vector<std::string> RemoveLoosePhotos(survey::ColmapModel& model, survey::C
   return loose;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

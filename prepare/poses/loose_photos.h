@@ -9,7 +9,7 @@
 
 #include "core/survey/colmap_model.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // Names, in name order, of the photos outside of the largest group that is tied together by at least kLeastTied common points of two photos each. Of
 // a model without points nothing can be said: then there are none.
@@ -21,4 +21,4 @@ std::vector<std::string> RemoveLoosePhotos(survey::ColmapModel& model, survey::C
 // Photos of another place have up to 5 by chance (`bench poses`), neighbours of a flight hundreds.
 constexpr size_t kLeastTied = 10;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -9,7 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ std::optional<std::vector<survey::DatabaseMatches>> LoadChunk(const fs::path& fi
   return matches;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

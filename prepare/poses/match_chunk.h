@@ -12,11 +12,11 @@
 
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_database.h"
-#include "prepare/matching/feature_matcher.h"
+#include "prepare/poses/feature_matcher.h"
 #include "prepare/poses/feature_store.h"
 #include "prepare/poses/pairs.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // Identity of what a chunk's matches are made from; `input` identifies the features.
 std::string ChunkKey(const std::string& input, std::span<const PhotoPair> pairs, const MatchRules& rules, size_t min_matches);
@@ -31,4 +31,4 @@ void SaveChunk(const std::filesystem::path& file, const std::string& key, std::s
 // Nothing when the file does not exist, is damaged, or has another key: then the chunk is to be matched (again).
 std::optional<std::vector<survey::DatabaseMatches>> LoadChunk(const std::filesystem::path& file, const std::string& key);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

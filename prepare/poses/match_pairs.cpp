@@ -9,7 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,4 +110,4 @@ void RemoveChunks(const MatchJob& job) {
   fs::remove_all(job.folder, ignored);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -10,7 +10,7 @@
 #include "prepare/poses/match_chunk.h"
 #include "prepare/poses/pose_task.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 struct MatchJob {
   std::filesystem::path folder;  // for the files of chunks; made if needed
@@ -29,4 +29,4 @@ void MatchPairs(const MatchJob& job, FeatureStore& features, const PhotoPairs& p
 // Removes the files of chunks: once the matches are in the database nobody needs them.
 void RemoveChunks(const MatchJob& job);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

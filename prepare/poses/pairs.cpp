@@ -9,7 +9,7 @@
 #include "core/base/disjoint_sets.h"
 #include "core/base/errors.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
@@ -182,4 +182,4 @@ std::vector<double> PlaceCosts(const std::vector<std::optional<PhotoPlace>>& pla
   return costs;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

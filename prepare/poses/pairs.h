@@ -11,7 +11,7 @@
 #include "prepare/poses/photo_places.h"
 #include "prepare/poses/pose_options.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // Numbers in the list of photos; a < b.
 struct PhotoPair {
@@ -47,4 +47,4 @@ void SortPairs(PhotoPairs& pairs);
 // In either order; the numbers must differ.
 PhotoPair MakePair(uint32_t a, uint32_t b);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -11,7 +11,7 @@
 #include "core/geo/enu_frame.h"
 #include "prepare/input/shots.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 constexpr double kDistinct_m = 0.5;
@@ -40,10 +40,10 @@ std::optional<Looking> LookingOf(const survey::PhotoTags& tags) {
 }
 
 // False when all oblique photos have exactly the same yaw; one alone proves nothing.
-bool YawsDiffer(const std::vector<PhotoFile>& photos) {
+bool YawsDiffer(const std::vector<input::PhotoFile>& photos) {
   std::optional<double> first;
   size_t n_oblique = 0;
-  for (const PhotoFile& photo : photos) {
+  for (const input::PhotoFile& photo : photos) {
     const auto looking = LookingOf(photo.tags);
     if (!looking || std::abs(looking->from_nadir_deg) < kObliqueFromNadir_deg) continue;
     ++n_oblique;
@@ -53,7 +53,7 @@ bool YawsDiffer(const std::vector<PhotoFile>& photos) {
   return n_oblique < 2;
 }
 
-bool HasPosition(const PhotoFile& photo) {
+bool HasPosition(const input::PhotoFile& photo) {
   return photo.tags.gps && geo::IsValid({photo.tags.gps->latitude_deg, photo.tags.gps->longitude_deg, 0.0});
 }
 
@@ -67,8 +67,8 @@ double HeightOf(const survey::PhotoTags& tags) {
 
 // Whether positions, rounded to a grid, tell at least every second shot from all others. Photos of a facade differ in height; those of one shot need
 // not differ.
-bool PlacesDiffer(const std::vector<std::optional<PhotoPlace>>& places, const std::vector<PhotoFile>& photos) {
-  const std::vector<size_t> shots = FindShots(photos);
+bool PlacesDiffer(const std::vector<std::optional<PhotoPlace>>& places, const std::vector<input::PhotoFile>& photos) {
+  const std::vector<size_t> shots = input::FindShots(photos);
   std::set<std::array<int64_t, 3>> cells;
   size_t n_shots = 0;
   for (size_t i = 0; i < places.size(); ++i) {
@@ -83,14 +83,14 @@ bool PlacesDiffer(const std::vector<std::optional<PhotoPlace>>& places, const st
 
 }  // namespace
 
-std::vector<std::optional<PhotoPlace>> FindPlaces(const std::vector<PhotoFile>& photos) {
+std::vector<std::optional<PhotoPlace>> FindPlaces(const std::vector<input::PhotoFile>& photos) {
   std::vector<std::optional<PhotoPlace>> places(photos.size());
   const auto first = std::find_if(photos.begin(), photos.end(), HasPosition);
   if (first == photos.end()) return places;
   const geo::EnuFrame frame({first->tags.gps->latitude_deg, first->tags.gps->longitude_deg, 0.0});
 
   std::vector<double> heights;
-  for (const PhotoFile& photo : photos) {
+  for (const input::PhotoFile& photo : photos) {
     if (const auto looking = LookingOf(photo.tags)) heights.push_back(looking->height_m);
   }
   const double median_height_m = heights.empty() ? kDefaultHeight_m : base::Median(heights);
@@ -126,4 +126,4 @@ bool HasObliquePhotos(const std::vector<std::optional<PhotoPlace>>& places) {
   return std::any_of(places.begin(), places.end(), [](const auto& place) { return place && (place->target - place->camera).norm() > kDistinct_m; });
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

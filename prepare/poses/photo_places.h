@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // In metres; x east, y north about a tagged position.
 struct PhotoPlace {
@@ -22,9 +22,9 @@ struct PhotoPlace {
 // heights included, than half as many as shots with a tag (input/shots.h). The direction counts for photos with gimbal angles and height above
 // take-off; no directions are used when the yaw of all oblique photos is the same number, which is how some programs write "unknown". Anywhere on
 // Earth.
-std::vector<std::optional<PhotoPlace>> FindPlaces(const std::vector<PhotoFile>& photos);
+std::vector<std::optional<PhotoPlace>> FindPlaces(const std::vector<input::PhotoFile>& photos);
 
 // Whether directions moved any target away from its camera.
 bool HasObliquePhotos(const std::vector<std::optional<PhotoPlace>>& places);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

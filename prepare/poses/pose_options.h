@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 struct PoseOptions {
   bool fast = true;        // own pairs and own matching; false: COLMAP does everything, with its own settings
@@ -49,4 +49,4 @@ constexpr PairRules kMorePairs{.all_below = 60, .neighbors = 24, .position_neigh
 // The fast way's result is accepted when it has at least this share of the photos.
 constexpr double kEnoughRegistered = 0.9;
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

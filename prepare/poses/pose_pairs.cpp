@@ -8,7 +8,7 @@
 #include "core/base/cancel.h"
 #include "core/base/order_statistics.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // Distance to the scene over that to the sixth nearest photo, at an overlap of two thirds and a field of view of 60 degrees. Not the nearest: a rig
@@ -66,4 +66,4 @@ PhotoPairs PairsByPose(const std::vector<geo::Rigid3d>& cam_from_world, const Pa
   return pairs;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

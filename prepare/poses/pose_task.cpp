@@ -12,7 +12,7 @@
 #include "core/survey/colmap_merge.h"
 #include "prepare/poses/match_chunk.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,4 +188,4 @@ void TaskRunner::Match(const MatchTask& task, const TaskProgress& on_progress) {
                 *features_, pairs, task.rules, task.min_matches, [&] { on_progress(1.0); }, threads_));
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

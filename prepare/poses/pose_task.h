@@ -14,11 +14,11 @@
 
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_database.h"
-#include "prepare/matching/feature_matcher.h"
 #include "prepare/poses/colmap_step.h"
+#include "prepare/poses/feature_matcher.h"
 #include "prepare/poses/feature_store.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // Features of photos of one camera, by COLMAP.
 struct FeatureTask {
@@ -85,4 +85,4 @@ class RemoteTasks {
   virtual void Run(std::span<const PoseTask> tasks, const TaskProgress& on_progress) = 0;
 };
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

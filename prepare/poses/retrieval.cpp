@@ -12,7 +12,7 @@
 #include "core/base/random.h"
 #include "core/kernel/descriptors.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 constexpr size_t kSamplesPerWord = 8;
@@ -187,4 +187,4 @@ std::vector<uint32_t> PhotoIndex::MostSimilar(size_t photo, size_t n) const {
   return others;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

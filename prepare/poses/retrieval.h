@@ -10,7 +10,7 @@
 
 #include "core/base/thread_pool.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 struct RetrievalOptions {
   size_t words = 4096;               // fewer where there are fewer than 8 sampled descriptors for each
@@ -48,4 +48,4 @@ class PhotoIndex {
 // Words for descriptors (rows of 128 bytes): means of the descriptors nearest to them by angle, of length 512 again. options.words of them at most.
 std::vector<uint8_t> LearnWords(std::span<const uint8_t> sample, const RetrievalOptions& options, base::ThreadPool& threads);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

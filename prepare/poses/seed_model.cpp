@@ -8,13 +8,13 @@
 #include "core/base/log.h"
 #include "core/survey/colmap_database.h"
 #include "core/survey/colmap_model.h"
+#include "prepare/input/tag_accuracy.h"
 #include "prepare/poses/focal_check.h"
-#include "prepare/seeded/focal_by_height.h"
-#include "prepare/seeded/point_colors.h"
-#include "prepare/seeded/seed_poses.h"
-#include "prepare/tag_accuracy.h"
+#include "prepare/poses/seed/focal_by_height.h"
+#include "prepare/poses/seed/point_colors.h"
+#include "prepare/poses/seed/seed_poses.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,7 +26,7 @@ fs::path SeededFolder(const ColmapJob& job) {
 }
 
 SeedPhoto SeedPhotoOf(const survey::DatabaseImage& image, const survey::PhotoTags& tags, const std::vector<survey::DatabaseKeypoint>& keypoints) {
-  const TagAccuracy accuracy = AccuracyOf(tags);
+  const input::TagAccuracy accuracy = input::AccuracyOf(tags);
   SeedPhoto photo{.image_id = image.id,
                   .camera_id = image.camera_id,
                   .name = image.name,
@@ -122,25 +122,25 @@ std::string TagText(const std::optional<double>& value) {
   return value ? fmt::format("{:.9g}", *value) : "-";
 }
 
-std::string SeedInputs(const std::vector<PhotoFile>& photos) {
+std::string SeedInputs(const std::vector<input::PhotoFile>& photos) {
   std::string text = fmt::format("seeded {}\n", kSeedVersion);
-  for (const PhotoFile& photo : photos) {
+  for (const input::PhotoFile& photo : photos) {
     const survey::PhotoTags& tags = photo.tags;
-    const TagAccuracy accuracy = AccuracyOf(tags);
+    const input::TagAccuracy accuracy = input::AccuracyOf(tags);
     text += tags.gps ? fmt::format("{:.9g}", tags.gps->height_m) : "-";
     text += fmt::format(" {:.9g} {:.9g} {}\n", accuracy.horizontal_m, accuracy.vertical_m, TagText(tags.gimbal_roll_deg));
   }
   return text;
 }
 
-std::optional<SeedInput> ReadSeedInput(const fs::path& file, const std::vector<PhotoFile>& photos, std::string* reason) {
+std::optional<SeedInput> ReadSeedInput(const fs::path& file, const std::vector<input::PhotoFile>& photos, std::string* reason) {
   const survey::ColmapDatabase database(file);
   std::unordered_map<std::string, survey::DatabaseImage> image_of_name;
   for (survey::DatabaseImage& image : database.ReadImages()) image_of_name.emplace(image.name, image);
   const std::map<uint32_t, camera::Camera> cameras = database.ReadCameras();
   SeedInput input;
   std::unordered_map<uint32_t, size_t> n_features;
-  for (const PhotoFile& photo : photos) {
+  for (const input::PhotoFile& photo : photos) {
     const auto image = image_of_name.find(photo.name);
     if (image == image_of_name.end()) continue;  // COLMAP could not read it
     const auto camera = cameras.find(image->second.camera_id);
@@ -166,7 +166,7 @@ std::optional<SeedInput> ReadSeedInput(const fs::path& file, const std::vector<P
   return input;
 }
 
-void SeedModel(const ColmapJob& job, const std::vector<PhotoFile>& photos, base::ThreadPool& threads) {
+void SeedModel(const ColmapJob& job, const std::vector<input::PhotoFile>& photos, base::ThreadPool& threads) {
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   const fs::path folder = SeededFolder(job);
@@ -192,4 +192,4 @@ std::optional<FoundModel> SeededModelOf(const ColmapJob& job) {
   return FoundModel{folder, survey::CountColmapImages(folder)};
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

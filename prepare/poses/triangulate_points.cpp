@@ -11,7 +11,7 @@
 #include "prepare/poses/fill_database.h"
 #include "prepare/poses/pose_pairs.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,15 +70,16 @@ void RunTriangulator(const ColmapJob& job, const ColmapSettings& settings, const
 
 }  // namespace
 
-std::vector<survey::ColmapPoint> TriangulatePoints(const ColmapJob& job, const std::vector<PhotoFile>& photos, const survey::ColmapModel& poses,
-                                                   const PoseOptions& options, base::ThreadPool& threads, RemoteTasks* ranks) {
+std::vector<survey::ColmapPoint> TriangulatePoints(const ColmapJob& job, const std::vector<input::PhotoFile>& photos,
+                                                   const survey::ColmapModel& poses, const PoseOptions& options, base::ThreadPool& threads,
+                                                   RemoteTasks* ranks) {
   const ColmapSettings settings{.program = base::FindProgram(options.colmap), .n_threads = threads.size(), .fast = true};
   base::LogInfo("the model has no points: COLMAP triangulates some from its poses; the log is {}", job.Log().string());
   const ImageOfName images = ImagesByName(poses);
   const std::string inputs = FeatureInputs(job, settings, photos, options);
-  const auto choose = [&](const std::vector<PhotoFile>& found, FeatureStore& /*features*/) {
+  const auto choose = [&](const std::vector<input::PhotoFile>& found, FeatureStore& /*features*/) {
     std::vector<geo::Rigid3d> cam_from_world;
-    for (const PhotoFile& photo : found) cam_from_world.push_back(images.at(photo.name)->cam_from_world);
+    for (const input::PhotoFile& photo : found) cam_from_world.push_back(images.at(photo.name)->cam_from_world);
     PhotoPairs pairs = PairsByPose(cam_from_world, PairRules{});
     base::LogInfo("pairs: {} of {} photos, by their poses", pairs.size(), found.size());
     return pairs;
@@ -102,4 +103,4 @@ std::vector<survey::ColmapPoint> TriangulatePoints(const ColmapJob& job, const s
   return points;
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

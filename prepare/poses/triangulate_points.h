@@ -6,17 +6,18 @@
 
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_model.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 #include "prepare/poses/colmap_step.h"
 #include "prepare/poses/pose_options.h"
 #include "prepare/poses/pose_task.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 
 // photos: those of the model's images, by name; sizes are those of the cameras. Points are in the model's frame, with tracks of its image ids.
 // Finished steps of an earlier call are not repeated. Throws base::InputError when COLMAP fails and when there are fewer than 10 points,
 // base::Interrupted.
-std::vector<survey::ColmapPoint> TriangulatePoints(const ColmapJob& job, const std::vector<PhotoFile>& photos, const survey::ColmapModel& poses,
-                                                   const PoseOptions& options, base::ThreadPool& threads, RemoteTasks* ranks = nullptr);
+std::vector<survey::ColmapPoint> TriangulatePoints(const ColmapJob& job, const std::vector<input::PhotoFile>& photos,
+                                                   const survey::ColmapModel& poses, const PoseOptions& options, base::ThreadPool& threads,
+                                                   RemoteTasks* ranks = nullptr);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

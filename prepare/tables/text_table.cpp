@@ -12,7 +12,7 @@
 #include "core/base/errors.h"
 #include "core/base/text.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::tables {
 namespace {
 
 constexpr size_t kMaxLineBytes = size_t{64} << 10;
@@ -225,4 +225,4 @@ void FailTableLine(const std::filesystem::path& file, int line, const std::strin
   throw base::InputError(file, (line > 0 ? "line " + std::to_string(line) + ": " : "") + found, fix);
 }
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::tables

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::tables {
 
 struct TableRow {
   int line = 0;  // in the file, from 1
@@ -38,4 +38,4 @@ bool IsNoValue(const std::string& text);
 // Throws base::InputError that names the line; 0: none.
 [[noreturn]] void FailTableLine(const std::filesystem::path& file, int line, const std::string& found, const std::string& fix);
 
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::tables

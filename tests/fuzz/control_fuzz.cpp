@@ -2,10 +2,10 @@
 #include <iterator>
 #include <string_view>
 
-#include "prepare/control/control_checks.h"
-#include "prepare/control/read_control.h"
+#include "prepare/control/reading/control_checks.h"
+#include "prepare/control/reading/read_control.h"
 #include "tests/fuzz/fuzz_target.h"
-#include "tests/prepare/control/made_control.h"
+#include "tests/prepare/control/reading/made_control.h"
 
 namespace skyquilt::fuzz {
 namespace {
@@ -16,7 +16,7 @@ constexpr const char* kCrs = "EPSG:2263";
 struct Control {
   test::MadeControl made = test::MakeControl();
   test::ControlTexts texts;
-  prepare::ControlFiles files;
+  prepare::control::ControlFiles files;
   TemporaryFolder folder;
   Control() {
     files.crs = kCrs;
@@ -61,9 +61,9 @@ void Feed(const std::string& bytes) {
   const auto& [name, text] = *std::next(whole.texts.begin(), static_cast<std::ptrdiff_t>(which));
   test::WriteTexts({{name, bytes.substr(1)}}, whole.folder.path());
   try {
-    const prepare::ControlPoints control = prepare::ReadControl(whole.files, whole.made.photos);
-    prepare::CheckNear(control, {whole.made.points[0].place});
-    prepare::CheckGeometry(control, true);
+    const prepare::control::ControlPoints control = prepare::control::ReadControl(whole.files, whole.made.photos);
+    prepare::control::CheckNear(control, {whole.made.points[0].place});
+    prepare::control::CheckGeometry(control, true);
   } catch (const base::InputError&) {
   }
   test::WriteTexts({{name, text}}, whole.folder.path());

@@ -36,7 +36,8 @@ void Feed(const std::string& bytes) {
   const auto& [name, content] = *std::next(whole.files.begin(), static_cast<std::ptrdiff_t>(which));
   test::WriteFiles({{name, bytes.substr(1)}}, whole.folder.path());
   try {
-    prepare::ReadModel(whole.folder / FUZZ_MODEL, prepare::ModelPhotos(whole.folder.path(), {"DJI_0001.png", "DJI_0002.png", "DJI_0003.png"}));
+    prepare::models::ReadModel(whole.folder / FUZZ_MODEL,
+                               prepare::models::ModelPhotos(whole.folder.path(), {"DJI_0001.png", "DJI_0002.png", "DJI_0003.png"}));
   } catch (const base::InputError&) {
   }
   test::WriteFiles({{name, content}}, whole.folder.path());

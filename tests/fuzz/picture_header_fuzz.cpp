@@ -14,7 +14,7 @@ std::vector<std::string> Seeds() {
 }
 
 void Feed(const std::string& bytes) {
-  prepare::ParsePictureHeader({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+  prepare::input::ParsePictureHeader({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace skyquilt::fuzz

@@ -1,16 +1,16 @@
 // Tables of photo positions: OpenDroneMap's geo.txt, others like it, and DJI's .MRK.
-#include "prepare/geo_table.h"
-#include "prepare/photo_positions.h"
+#include "prepare/georeference/tags/geo_table.h"
+#include "prepare/georeference/tags/photo_positions.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace skyquilt::fuzz {
 namespace {
 
-const std::vector<prepare::PhotoFile>& Photos() {
-  static const std::vector<prepare::PhotoFile> photos = [] {
-    std::vector<prepare::PhotoFile> all;
+const std::vector<prepare::input::PhotoFile>& Photos() {
+  static const std::vector<prepare::input::PhotoFile> photos = [] {
+    std::vector<prepare::input::PhotoFile> all;
     for (const char* name : {"a.jpg", "flight/DJI_0028.JPG", "other/DJI_0028.JPG", "my photo 2.jpg"}) {
-      prepare::PhotoFile photo{.name = name, .width = 4, .height = 3, .tags = {}};
+      prepare::input::PhotoFile photo{.name = name, .width = 4, .height = 3, .tags = {}};
       photo.tags.gps = geo::Geodetic{46.84, -91.99, 200.0};
       all.push_back(photo);
     }
@@ -33,8 +33,8 @@ std::vector<std::string> Seeds() {
 }
 
 void Feed(const std::string& bytes) {
-  FeedFile("geo.txt", bytes, [](const std::filesystem::path& file) { prepare::ReadGeoTable(file, Photos()); });
-  FeedFile("a.MRK", bytes, [](const std::filesystem::path& file) { prepare::ReadMrkFile(file); });
+  FeedFile("geo.txt", bytes, [](const std::filesystem::path& file) { prepare::georeference::ReadGeoTable(file, Photos()); });
+  FeedFile("a.MRK", bytes, [](const std::filesystem::path& file) { prepare::georeference::ReadMrkFile(file); });
 }
 
 }  // namespace skyquilt::fuzz

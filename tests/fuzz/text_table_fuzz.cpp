@@ -1,5 +1,5 @@
 // The tables that control points, marks and positions of photos are read from, the meaning of their columns, and names of photos.
-#include "prepare/control/control_columns.h"
+#include "prepare/control/reading/control_columns.h"
 #include "prepare/models/photo_names.h"
 #include "prepare/tables/text_table.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -17,15 +17,16 @@ std::vector<std::string> Seeds() {
 
 void Feed(const std::string& bytes) {
   try {
-    const prepare::TextTable table = prepare::ParseTextTable("table.txt", bytes);
-    const prepare::PhotoNames names({"a.jpg", "x/DJI_0028.JPG", "y/DJI_0028.JPG", "a b.jpg"});
-    for (const prepare::TableKind kind : {prepare::TableKind::kPoints, prepare::TableKind::kMarks, prepare::TableKind::kPositions}) {
-      const prepare::ControlColumns columns(table.heading, kind);
-      for (const prepare::TableRow& row : table.rows) columns.Field(row.fields, prepare::ControlColumn::kX);
+    const prepare::tables::TextTable table = prepare::tables::ParseTextTable("table.txt", bytes);
+    const prepare::models::PhotoNames names({"a.jpg", "x/DJI_0028.JPG", "y/DJI_0028.JPG", "a b.jpg"});
+    for (const prepare::control::TableKind kind :
+         {prepare::control::TableKind::kPoints, prepare::control::TableKind::kMarks, prepare::control::TableKind::kPositions}) {
+      const prepare::control::ControlColumns columns(table.heading, kind);
+      for (const prepare::tables::TableRow& row : table.rows) columns.Field(row.fields, prepare::control::ControlColumn::kX);
     }
-    for (const prepare::TableRow& row : table.rows) {
+    for (const prepare::tables::TableRow& row : table.rows) {
       for (const std::string& field : row.fields) {
-        prepare::ParseTableNumber(field, table.decimal_comma);
+        prepare::tables::ParseTableNumber(field, table.decimal_comma);
         if (const auto found = names.Find(field)) names.CommonParts(field, *found);
       }
     }

@@ -12,7 +12,7 @@
 #include "core/image/image.h"
 #include "core/survey/exif.h"
 #include "prepare/prepare.h"
-#include "tests/prepare/control_fit/made_control.h"
+#include "tests/prepare/control/fit/made_control.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -59,8 +59,8 @@ void ChangeHeldOut(test::MadeControl& made) {
       seen.pixel += Eigen::Vector2d(12.0 + std::sin(k), -9.0 + std::cos(k));
     }
   }
-  for (ControlPoint& point : made.control.points) {
-    for (ControlMark& mark : point.marks) {
+  for (control::ControlPoint& point : made.control.points) {
+    for (control::ControlMark& mark : point.marks) {
       if (IsHeldOut(mark.photo)) mark.pixel += Eigen::Vector2d(2.0, 2.0);
     }
   }
@@ -106,8 +106,8 @@ class HoldoutFolder : public ::testing::Test {
     }
     survey::WriteColmapBinary(made.model, made.observations, folder / "sparse/0");
     std::string list = "EPSG:4326\n";
-    for (const ControlPoint& point : made.control.points) {
-      for (const ControlMark& mark : point.marks) {
+    for (const control::ControlPoint& point : made.control.points) {
+      for (const control::ControlMark& mark : point.marks) {
         list += fmt::format("{:.12f} {:.12f} {:.6f} {:.6f} {:.6f} {} {}\n", point.place.longitude_deg, point.place.latitude_deg, point.place.height_m,
                             mark.pixel.x() - 0.5, mark.pixel.y() - 0.5, mark.photo, point.label);
       }

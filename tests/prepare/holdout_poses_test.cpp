@@ -10,8 +10,8 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "core/linear/linear.h"
-#include "prepare/seeded/resect.h"
-#include "tests/prepare/control_fit/made_control.h"
+#include "prepare/bundle/resect.h"
+#include "tests/prepare/control/fit/made_control.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -197,7 +197,7 @@ TEST(HoldoutPoses, AHeldOutPhotoThatSeesTooLittleLosesItsPose) {
   test::MadeControl blind = MadeFlight();
   std::vector<survey::ColmapObservation>& seen = blind.observations.at(8);
   ASSERT_GT(seen.size(), 100U);
-  seen.resize(kLeastObservations - 1);
+  seen.resize(bundle::kLeastObservations - 1);
   const Resection all = Resected(MadeFlight(), PoolOfTwo()), result = Resected(blind, PoolOfTwo());
   EXPECT_EQ(result.lost, std::vector<std::string>{"photo_107.jpg"});
   EXPECT_EQ(result.model.images.size(), 19U);
@@ -247,7 +247,7 @@ TEST(HoldoutPoses, PhotosThatOnlyHeldOutOnesTieToTheRestAreNotAdjusted) {
 
 TEST(HoldoutPoses, TagsOfResectedPhotosAreComparedAsTheirNeighbours) {
   const geo::EnuFrame frame({47.0, 8.0, 400.0});
-  std::vector<Station> stations(5);
+  std::vector<input::Station> stations(5);
   for (size_t i = 0; i < stations.size(); ++i) {
     const Eigen::Vector3d centre(10.0 * static_cast<double>(i), 0.0, 50.0);
     stations[i].cam_from_model = {Eigen::Quaterniond::Identity(), -centre};
@@ -258,14 +258,14 @@ TEST(HoldoutPoses, TagsOfResectedPhotosAreComparedAsTheirNeighbours) {
   stations[0].time_s = 1000.0;
   stations[4].time_s = 1004.0;
   stations[3].gps->height_m = std::numeric_limits<double>::quiet_NaN();
-  Georeference georeference;
+  georeference::Georeference georeference;
   georeference.ok = true;
   georeference.origin = frame.origin();
   georeference.flight = {0, 0, 1};  // of stations 1, 2 and 4
   georeference.correction_m = {{0.0, -1.0, 0.0}, {0.0, -1.0, 0.5}, {0.0, -0.5, 2.0}};
   georeference.residual_m.assign(3, Eigen::Vector3d(0.1, 0.1, 0.1));
   georeference.inlier.assign(3, 1);
-  Georeference local = georeference;
+  georeference::Georeference local = georeference;
   AddResected(stations, {1, 0, 0, 1, 0}, georeference);
   EXPECT_EQ(georeference.flight, (std::vector<int>{1, 0, 0, 0, 1}));
   EXPECT_EQ(georeference.inlier, (std::vector<char>{0, 1, 1, 0, 1}));

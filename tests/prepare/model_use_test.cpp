@@ -10,7 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
-#include "prepare/photo_positions.h"
+#include "prepare/georeference/tags/photo_positions.h"
 #include "prepare/prepare.h"
 #include "tests/prepare/models/made_models.h"
 #include "tests/prepare/synthetic_flight.h"
@@ -124,7 +124,7 @@ TEST_F(OtherModel, ThePositionFileOfTheOptionCountsInPlaceOfTheTags) {
   }
   options_.geo_file = (folder_ / "positions.txt").string();
   base::WriteFileAtomically(options_.geo_file, table.str());
-  EXPECT_EQ(PositionFiles(folder_.path(), options_.geo_file), (std::vector<std::filesystem::path>{options_.geo_file}));
+  EXPECT_EQ(georeference::PositionFiles(folder_.path(), options_.geo_file), (std::vector<std::filesystem::path>{options_.geo_file}));
   const survey::Survey survey = Run({}, "sparse/0");
   EXPECT_NEAR(survey.origin.latitude_deg, 47.01, 1e-3);
 }

@@ -48,7 +48,7 @@ class RankTasksTest : public testing::Test {
     for (std::thread& thread : ranks_) thread.join();
     base::ClearCancel();
   }
-  prepare::FeatureTask Part(int number) {
+  prepare::poses::FeatureTask Part(int number) {
     const std::string name = std::to_string(number);
     return {.job = {.photo_root = folder_ / "images", .masks = {}, .folder = folder_ / ""},
             .program = program_,
@@ -69,7 +69,7 @@ class RankTasksTest : public testing::Test {
 };
 
 TEST_F(RankTasksTest, EveryTaskIsDoneOnce) {
-  std::vector<prepare::PoseTask> tasks;
+  std::vector<prepare::poses::PoseTask> tasks;
   for (int i = 0; i < 5; ++i) tasks.emplace_back(Part(i));
   RankTasks ranks(root_, {.threads = 4}, folder_.path(), false, true);
   EXPECT_EQ(ranks.size(), 2);
@@ -86,13 +86,13 @@ TEST_F(RankTasksTest, EveryTaskIsDoneOnce) {
 TEST_F(RankTasksTest, AFailureNamesTheRankAndItsLog) {
   base::WriteFileAtomically(folder_ / "fail", "photo 0.jpg");
   RankTasks ranks(root_, {.threads = 2}, folder_.path(), false, true);
-  const std::vector<prepare::PoseTask> tasks = {Part(0)};
+  const std::vector<prepare::poses::PoseTask> tasks = {Part(0)};
   const std::string error = InputErrorOf([&] { ranks.Run(tasks, [](double) {}); });
   EXPECT_NE(error.find("rank 1 on "), std::string::npos) << error;
   EXPECT_NE(error.find("colmap_rank_1.log"), std::string::npos) << error;
   EXPECT_NE(error.find("cannot read photo 0.jpg"), std::string::npos) << error;
   // The ranks can go on.
-  const std::vector<prepare::PoseTask> others = {Part(1), Part(2)};
+  const std::vector<prepare::poses::PoseTask> others = {Part(1), Part(2)};
   ranks.Run(others, [](double) {});
   EXPECT_TRUE(std::filesystem::exists(folder_ / "part_2.db"));
 }
@@ -111,16 +111,16 @@ TEST(ServeTasksTest, TheEndOfTheProgramIsNotLost) {
   root.Send(1, kTagThreads, "1");
   test::MadeDatabase(folder / "made.db").Run("PRAGMA journal_mode = DELETE");
   base::WriteFileAtomically(folder / "slow", "");
-  const prepare::FeatureTask task{.job = {.photo_root = folder.path(), .masks = {}, .folder = folder.path()},
-                                  .program = test::WriteFakeExtractor(folder.path()),
-                                  .arguments = {},
-                                  .camera_model = "PINHOLE",
-                                  .search = {},
-                                  .few_features = 0,
-                                  .search_again = {},
-                                  .names = {"photo.jpg"},
-                                  .file = folder / "part.db"};
-  root.Send(1, kTagTask, TaskMessage(0, prepare::ToText(task)));
+  const prepare::poses::FeatureTask task{.job = {.photo_root = folder.path(), .masks = {}, .folder = folder.path()},
+                                         .program = test::WriteFakeExtractor(folder.path()),
+                                         .arguments = {},
+                                         .camera_model = "PINHOLE",
+                                         .search = {},
+                                         .few_features = 0,
+                                         .search_again = {},
+                                         .names = {"photo.jpg"},
+                                         .file = folder / "part.db"};
+  root.Send(1, kTagTask, TaskMessage(0, prepare::poses::ToText(task)));
   MessageFrom(root, kTagTaskPart);
   root.Send(1, kTagDone, "");
   root.Send(1, kTagQuit, "");

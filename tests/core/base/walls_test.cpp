@@ -61,6 +61,29 @@ const std::map<std::string, std::set<std::string>>& AllowedIncludes() {
   return allowed;
 }
 
+// The folders of a room that are rooms, too.
+struct InnerRoom {
+  std::map<std::string, std::set<std::string>> arrows;  // per folder, the other folders that it may include
+  std::set<std::string> shared;                         // files above the folders that these may include; they know no other of them
+};
+
+const std::map<std::string, InnerRoom>& InnerRooms() {
+  static const std::map<std::string, InnerRoom> inner = {
+      {"prepare",
+       {{
+            {"tables", {}},
+            {"models", {}},
+            {"input", {"models", "tables"}},
+            {"bundle", {}},
+            {"poses", {"input", "bundle"}},
+            {"control", {"input", "models", "tables", "bundle"}},
+            {"georeference", {"control", "poses", "input", "models", "tables", "bundle"}},
+        },
+        {}}},
+  };
+  return inner;
+}
+
 struct Library {
   std::string name;
   std::regex header;
@@ -96,6 +119,24 @@ std::string RoomOf(const std::string& path) {
   return path.substr(0, path.starts_with("core/") ? path.find('/', first + 1) : first);
 }
 
+// The folder of a path inside of its room, as in InnerRooms: "poses" of "prepare/poses/seed/verdict.h"; empty for files above the folders.
+std::string InnerRoomOf(const std::string& path) {
+  const size_t first = RoomOf(path).size() + 1, end = path.find('/', first);
+  return end == std::string::npos ? "" : path.substr(first, end - first);
+}
+
+// Why a file may not include a header of its own room; empty when it may.
+std::string InnerViolation(const std::string& file, const std::string& header) {
+  const auto inner = InnerRooms().find(RoomOf(file));
+  if (inner == InnerRooms().end()) return "";
+  const std::string from = InnerRoomOf(file), to = InnerRoomOf(header);
+  if (from.empty() || from == to || inner->second.shared.contains(header)) return "";
+  const auto allowed = inner->second.arrows.find(from);
+  if (allowed == inner->second.arrows.end()) return from + " is not a folder of InnerRooms";
+  if (allowed->second.contains(to)) return "";
+  return inner->first + "/" + from + " may not include " + (to.empty() ? "what lies above it" : inner->first + "/" + to);
+}
+
 bool IsOurs(const std::string& folder) {
   return std::any_of(AllowedIncludes().begin(), AllowedIncludes().end(),
                      [&](const auto& room) { return room.first == folder || room.first.starts_with(folder + "/"); });
@@ -112,7 +153,8 @@ std::string Violation(const std::string& file, const std::string& header) {
   const auto allowed = AllowedIncludes().find(room);
   if (allowed == AllowedIncludes().end()) return room + " is not a room of AllowedIncludes";
   const std::string other = RoomOf(header);
-  if (other == room || allowed->second.contains(other)) return "";
+  if (other == room) return InnerViolation(file, header);
+  if (allowed->second.contains(other)) return "";
   if (other.starts_with("core/") && allowed->second.contains("core") && AllowedIncludes().contains(other)) return "";
   return room + " may not include " + other;
 }
@@ -172,15 +214,8 @@ bool HasAny(const std::string& line, const std::vector<std::string>& words) {
   return std::any_of(words.begin(), words.end(), [&line](const std::string& word) { return line.find(word) != std::string::npos; });
 }
 
-TEST(Rooms, HaveNoCyclicIncludes) {
-  // Removes rooms that include none of those left, until none is left.
-  std::map<std::string, std::set<std::string>> left = AllowedIncludes();
-  for (auto& [room, others] : left) {
-    if (others.erase("core") == 0) continue;
-    for (const auto& [other, ignored] : AllowedIncludes()) {
-      if (other.starts_with("core/")) others.insert(other);
-    }
-  }
+// Removes rooms that include none of those left, until none is left.
+void ExpectNoCycle(std::map<std::string, std::set<std::string>> left) {
   while (!left.empty()) {
     const auto end = std::find_if(left.begin(), left.end(), [](const auto& room) { return room.second.empty(); });
     ASSERT_NE(end, left.end()) << "a cycle with " << left.begin()->first;
@@ -188,6 +223,17 @@ TEST(Rooms, HaveNoCyclicIncludes) {
     left.erase(end);
     for (auto& [other, others] : left) others.erase(room);
   }
+}
+
+TEST(Rooms, HaveNoCyclicIncludes) {
+  std::map<std::string, std::set<std::string>> rooms = AllowedIncludes();
+  for (auto& [room, others] : rooms) {
+    if (others.erase("core") == 0) continue;
+    for (const auto& [other, ignored] : AllowedIncludes()) {
+      if (other.starts_with("core/")) others.insert(other);
+    }
+  }
+  ExpectNoCycle(rooms);
 }
 
 TEST(Rooms, EveryFolderWithCodeIsOne) {
@@ -224,6 +270,50 @@ TEST(Rooms, IncludeOnlyWhatIsAllowed) {
   }
   EXPECT_GT(Sources().size(), 20U) << "hardly any source found under " << SKYQUILT_SOURCE_DIR;
   EXPECT_EQ(report, "");
+}
+
+TEST(InnerRooms, HaveNoCyclicIncludes) {
+  for (const auto& [room, inner] : InnerRooms()) ExpectNoCycle(inner.arrows);
+}
+
+TEST(InnerRooms, EveryFolderWithCodeIsOne) {
+  for (const auto& [room, inner] : InnerRooms()) {
+    std::set<std::string> found;
+    for (const auto& [file, lines] : Sources()) {
+      if (RoomOf(file) == room && !InnerRoomOf(file).empty()) found.insert(InnerRoomOf(file));
+    }
+    std::set<std::string> named;
+    for (const auto& [folder, ignored] : inner.arrows) named.insert(folder);
+    EXPECT_EQ(found, named) << room;
+  }
+}
+
+TEST(InnerRooms, NamespacesAreNamedAfterThem) {
+  for (const auto& [file, lines] : Sources()) {
+    if (!InnerRooms().contains(RoomOf(file))) continue;
+    const std::string folder = InnerRoomOf(file);
+    const std::string name = "namespace skyquilt::" + RoomOf(file) + (folder.empty() ? "" : "::" + folder);
+    for (const std::string& line : lines) {
+      // By the ends, because a type of another folder may be declared in a line.
+      if (line.starts_with("}  // namespace skyquilt")) EXPECT_EQ(line, "}  // " + name) << file;
+    }
+  }
+}
+
+TEST(InnerRooms, ForbiddenIncludesAreFound) {
+  const std::vector<std::pair<std::string, std::string>> violators = {
+      {"prepare/bundle/a.cpp", "prepare/control/fit/fit_control.h"}, {"prepare/poses/seed/a.h", "prepare/georeference/gravity.h"},
+      {"prepare/control/fit/a.cpp", "prepare/prepare_options.h"},    {"prepare/input/masks/a.cpp", "prepare/poses/pairs.h"},
+      {"prepare/nowhere/a.cpp", "prepare/input/station.h"},
+  };
+  for (const auto& [file, header] : violators) EXPECT_EQ(ViolationsIn(file, "#include \"" + header + "\"\n").size(), 1U) << file << ": " << header;
+  const std::vector<std::pair<std::string, std::string>> accepted = {
+      {"prepare/a.cpp", "prepare/control/fit/fit_control.h"},
+      {"prepare/poses/a.cpp", "prepare/poses/seed/verdict.h"},
+      {"prepare/georeference/tags/a.cpp", "prepare/input/station.h"},
+      {"prepare/bundle/a.cpp", "core/linear/linear.h"},
+  };
+  for (const auto& [file, header] : accepted) EXPECT_TRUE(ViolationsIn(file, "#include \"" + header + "\"\n").empty()) << file << ": " << header;
 }
 
 // Scores against kept points mean nothing when anything that leads to a scene has seen them.

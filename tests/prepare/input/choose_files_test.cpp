@@ -10,7 +10,7 @@
 #include "prepare/input/glob.h"
 #include "prepare/input/list_files.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 struct MadeFile {
@@ -150,4 +150,4 @@ RC_GTEST_PROP(ChooseFiles, PlainPhotosAreAllTaken, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -5,7 +5,7 @@
 
 #include "tests/support/error_of.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 TEST(MatchesPattern, ComparesNamesOrPaths) {
@@ -46,4 +46,4 @@ RC_GTEST_PROP(MatchesPattern, EveryNameMatchesItselfAndItsPartsWithStars, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

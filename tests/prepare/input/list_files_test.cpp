@@ -10,7 +10,7 @@
 #include "tests/prepare/input/made_folder.h"
 #include "tests/support/error_of.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -274,4 +274,4 @@ TEST_F(InputList, TheTableHasALinePerFileAndTheSummaryTheirNumbers) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -56,19 +56,19 @@ class MadeFolder {
   }
   void AddPng(const std::string& name, const image::Image8& pixels) { Add(name, image::EncodePng(pixels, 1)); }
 
-  std::vector<prepare::InputFile> List(const prepare::ListOptions& options = {}) {
-    files_ = prepare::ListInput(folder_.path(), options, threads_);
+  std::vector<prepare::input::InputFile> List(const prepare::input::ListOptions& options = {}) {
+    files_ = prepare::input::ListInput(folder_.path(), options, threads_);
     return files_;
   }
   std::vector<std::string> Taken(const std::string& patterns = "") {
-    prepare::ListOptions options;
+    prepare::input::ListOptions options;
     options.patterns = patterns;
-    return prepare::TakenNames(List(options));
+    return prepare::input::TakenNames(List(options));
   }
   // In the last list; without a name when it has no such file.
-  prepare::InputFile Row(const std::string& name) const {
-    const auto found = std::find_if(files_.begin(), files_.end(), [&name](const prepare::InputFile& file) { return file.name == name; });
-    return found == files_.end() ? prepare::InputFile() : *found;
+  prepare::input::InputFile Row(const std::string& name) const {
+    const auto found = std::find_if(files_.begin(), files_.end(), [&name](const prepare::input::InputFile& file) { return file.name == name; });
+    return found == files_.end() ? prepare::input::InputFile() : *found;
   }
 
   const std::filesystem::path& path() const { return folder_.path(); }
@@ -77,7 +77,7 @@ class MadeFolder {
  private:
   TemporaryFolder folder_;
   base::ThreadPool threads_{2};
-  std::vector<prepare::InputFile> files_;
+  std::vector<prepare::input::InputFile> files_;
 };
 
 }  // namespace skyquilt::test

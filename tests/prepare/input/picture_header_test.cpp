@@ -6,7 +6,7 @@
 #include "core/base/random.h"
 #include "tests/prepare/input/made_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 PictureHeader HeaderOf(const std::string& bytes) {
@@ -62,4 +62,4 @@ RC_GTEST_PROP(PictureHeader, AcceptsAnyBytes, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

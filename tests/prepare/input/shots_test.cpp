@@ -8,7 +8,7 @@
 #include "core/base/random.h"
 #include "core/geo/enu_frame.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::input {
 namespace {
 
 const geo::EnuFrame kFrame({47.0, 8.0, 400.0});
@@ -97,4 +97,4 @@ RC_GTEST_PROP(FindShots, AreRunsOfNeighbours, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::input

@@ -16,7 +16,7 @@
 #include "tests/prepare/models/made_models.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 using Eigen::Vector3d;
@@ -205,4 +205,4 @@ TEST_F(Conventions, FisheyesOfTransformsAndMetashapeAreOpencvs) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

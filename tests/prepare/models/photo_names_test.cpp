@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::models {
 namespace {
 
 TEST(PhotoNames, ThePathComesBeforeTheFileName) {
@@ -48,4 +48,4 @@ TEST(PhotoNames, QuotesAroundLabelsDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::models

@@ -8,7 +8,7 @@
 #include "tests/support/made_database.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // Photos in lines whose features are those of the ground below: each line of cells is `kCellStep_m` to the east, and a photo sees the cells around
@@ -36,7 +36,7 @@ class ChoosePairsTest : public testing::Test {
   }
   PhotoPairs Choose(const PairRules& rules = {}) {
     std::vector<std::string> names;
-    for (const PhotoFile& photo : photos_) names.push_back(photo.name);
+    for (const input::PhotoFile& photo : photos_) names.push_back(photo.name);
     FeatureStore features(file_, names, 1 << 20);
     base::ThreadPool threads(2);
     return ChoosePairs(photos_, rules, 1, features, threads);
@@ -47,7 +47,7 @@ class ChoosePairsTest : public testing::Test {
 
   TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "database.db";
-  std::vector<PhotoFile> photos_;
+  std::vector<input::PhotoFile> photos_;
 };
 
 TEST_F(ChoosePairsTest, SmallSurveysHaveAllPairs) {
@@ -79,7 +79,7 @@ TEST_F(ChoosePairsTest, PhotosWithoutTagsArePairedByTheirLooks) {
 
 TEST_F(ChoosePairsTest, SurveysWithoutTagsAreConnectedAndMostlyRight) {
   MakeSurvey(4, 15);
-  for (PhotoFile& photo : photos_) photo.tags.gps.reset();
+  for (input::PhotoFile& photo : photos_) photo.tags.gps.reset();
   const PairRules rules{.similar = 10, .name_neighbors = 0};
   const PhotoPairs pairs = Choose(rules);
   EXPECT_EQ(CountGroups(photos_.size(), pairs), 1U);
@@ -108,4 +108,4 @@ TEST_F(ChoosePairsTest, PhotosWithoutFeaturesAreConnected) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -13,7 +13,7 @@
 #include "tests/support/made_database.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 TEST(ColmapProgress, IsReadFromItsOutput) {
@@ -94,7 +94,7 @@ class FastWay : public FakeColmap {
     base::Random random(2);
     std::vector<std::array<uint8_t, 128>> features;
     for (int i = 0; i < 30; ++i) features.push_back(test::RandomDescriptor(random));
-    for (PhotoFile& photo : photos_) photo.name = "flight 1/" + photo.name;
+    for (input::PhotoFile& photo : photos_) photo.name = "flight 1/" + photo.name;
     test::MadeDatabase made(folder_ / "made.db");
     made.Run("PRAGMA journal_mode = DELETE");  // one file, to copy
     for (uint32_t i = 0; i < photos_.size(); ++i) {
@@ -268,4 +268,4 @@ TEST_F(FastWay, TriesMorePairsWhenItFindsNoModel) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

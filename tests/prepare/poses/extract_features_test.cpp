@@ -16,7 +16,7 @@
 #include "tests/support/made_database.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 TEST(PhotosPerPartTest, EveryProcessGetsSomeAndEveryThreadToo) {
@@ -112,7 +112,7 @@ class ExtractFeaturesTest : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  std::vector<PhotoFile> photos_;
+  std::vector<input::PhotoFile> photos_;
   ColmapSettings settings_;
   PlayedRanks ranks_;
 };
@@ -155,7 +155,7 @@ TEST_F(ExtractFeaturesTest, RanksFindTheSameMatches) {
   Extract(alone, nullptr);
   std::filesystem::copy_file(alone.Database(), shared.Database());
   std::vector<std::string> names;
-  for (const PhotoFile& photo : photos_) names.push_back(photo.name);
+  for (const input::PhotoFile& photo : photos_) names.push_back(photo.name);
   const PhotoPairs pairs = AllPairs(photos_.size());
   base::ThreadPool threads(2);
   FeatureStore store(alone.Database(), names, kFeatureMemory_bytes), shared_store(shared.Database(), names, kFeatureMemory_bytes);
@@ -173,4 +173,4 @@ TEST_F(ExtractFeaturesTest, RanksFindTheSameMatches) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

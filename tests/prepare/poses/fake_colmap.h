@@ -20,14 +20,14 @@ class FakeColmap : public testing::Test {
   void SetUp() override {
     std::filesystem::create_directories(folder_ / "images");
     photos_ = GridPhotos(4, 5, 20.0, 25.0, {47.0, 8.0, 400.0});
-    for (const prepare::PhotoFile& photo : photos_) base::WriteFileAtomically(folder_ / ("images/" + photo.name), "pixels");
+    for (const prepare::input::PhotoFile& photo : photos_) base::WriteFileAtomically(folder_ / ("images/" + photo.name), "pixels");
     options_.colmap = (folder_ / "colmap").string();
   }
   void WriteProgram(const std::string& text) {
     base::WriteFileAtomically(options_.colmap, text);
     std::filesystem::permissions(options_.colmap, std::filesystem::perms::owner_all);
   }
-  std::string Find() { return prepare::RunColmap(job_, photos_, options_, threads_).string(); }
+  std::string Find() { return prepare::poses::RunColmap(job_, photos_, options_, threads_).string(); }
   std::string FirstModel() const { return (job_.folder / "sparse" / "0").string(); }
   std::string SecondModel() const { return (job_.folder / "more_pairs" / "sparse" / "0").string(); }
   // For the program below.
@@ -41,9 +41,9 @@ class FakeColmap : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  std::vector<prepare::PhotoFile> photos_;
-  prepare::PoseOptions options_;
-  prepare::ColmapJob job_{folder_ / "images", {}, folder_ / "work"};
+  std::vector<prepare::input::PhotoFile> photos_;
+  prepare::poses::PoseOptions options_;
+  prepare::poses::ColmapJob job_{folder_ / "images", {}, folder_ / "work"};
   base::ThreadPool threads_{1};
 };
 

@@ -9,7 +9,7 @@
 #include "tests/support/made_database.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 camera::Camera CameraWith(double focal_px) {
@@ -98,7 +98,7 @@ class CorrectFocalsTest : public ::testing::Test {
     uint32_t id = 0;
     for (const char* name : {"a", "b", "c"}) {
       made.AddImage(++id, name);
-      PhotoFile photo;
+      input::PhotoFile photo;
       photo.name = name;
       photos_.push_back(photo);
     }
@@ -124,7 +124,7 @@ class CorrectFocalsTest : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  std::vector<PhotoFile> photos_;
+  std::vector<input::PhotoFile> photos_;
 };
 
 TEST_F(CorrectFocalsTest, LeavesLensesAlone) {
@@ -154,12 +154,12 @@ TEST_F(CorrectFocalsTest, ReplacesWhatNoLensHasByWhatOtherPhotosSay) {
 // COLMAP has guessed: the copies have no tags.
 TEST_F(CorrectFocalsTest, PhotosThatWereConvertedKeepTheirTags) {
   MakeCamera(960.0);
-  for (PhotoFile& photo : photos_) photo.tags.focal_length_35mm = 20.0;
+  for (input::PhotoFile& photo : photos_) photo.tags.focal_length_35mm = 20.0;
   EXPECT_EQ(Corrected(), 960.0);
-  for (PhotoFile& photo : photos_) photo.converted = true;
+  for (input::PhotoFile& photo : photos_) photo.converted = true;
   EXPECT_EQ(Corrected(), 20.0 / 35.0 * 800.0);
   EXPECT_TRUE(IsKnown());
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -4,7 +4,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // A model that is filled by points.
@@ -85,4 +85,4 @@ TEST(LoosePhotos, OfAModelWithoutPointsNothingIsKnown) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

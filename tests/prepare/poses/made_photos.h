@@ -10,13 +10,13 @@
 
 #include "core/base/random.h"
 #include "core/geo/enu_frame.h"
-#include "prepare/photo_files.h"
+#include "prepare/input/photo_files.h"
 
 namespace skyquilt::test {
 
 // A photo at x (east, north; metres) about the origin, looking straight down from 100 m.
-inline prepare::PhotoFile PhotoAt(size_t number, const Eigen::Vector2d& x, const geo::EnuFrame& frame) {
-  prepare::PhotoFile photo;
+inline prepare::input::PhotoFile PhotoAt(size_t number, const Eigen::Vector2d& x, const geo::EnuFrame& frame) {
+  prepare::input::PhotoFile photo;
   photo.name = "photo_" + std::to_string(1000 + number) + ".jpg";
   photo.width = 64;
   photo.height = 48;
@@ -29,9 +29,10 @@ inline prepare::PhotoFile PhotoAt(size_t number, const Eigen::Vector2d& x, const
 }
 
 // Lines to the east, one north of the other.
-inline std::vector<prepare::PhotoFile> GridPhotos(size_t lines, size_t per_line, double step_m, double between_lines_m, const geo::Geodetic& origin) {
+inline std::vector<prepare::input::PhotoFile> GridPhotos(size_t lines, size_t per_line, double step_m, double between_lines_m,
+                                                         const geo::Geodetic& origin) {
   const geo::EnuFrame frame(origin);
-  std::vector<prepare::PhotoFile> photos;
+  std::vector<prepare::input::PhotoFile> photos;
   for (size_t i = 0; i < lines * per_line; ++i) {
     const auto column = static_cast<double>(i % per_line), row = static_cast<double>(i / per_line);
     photos.push_back(PhotoAt(i, {step_m * column, between_lines_m * row}, frame));

@@ -14,7 +14,7 @@
 #include "tests/support/made_database.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 constexpr uint32_t kPhotos = 8;
@@ -191,4 +191,4 @@ TEST_F(MatchPairsTest, TheStoreGivesLargeFeaturesFirst) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -13,7 +13,7 @@
 #include "prepare/poses/photo_places.h"
 #include "tests/prepare/poses/made_photos.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 using Places = std::vector<std::optional<PhotoPlace>>;
@@ -177,7 +177,7 @@ TEST(PairsAnywhereOnEarth, AreTheSame) {
   for (Eigen::Vector2d& position : x) position = {random.Uniform(-500.0, 500.0), random.Uniform(-500.0, 500.0)};
   const auto pairs_at = [&](const geo::Geodetic& origin) {
     const geo::EnuFrame frame(origin);
-    std::vector<PhotoFile> photos;
+    std::vector<input::PhotoFile> photos;
     for (size_t i = 0; i < x.size(); ++i) photos.push_back(test::PhotoAt(i, x[i], frame));
     return PairsInSpace(FindPlaces(photos), PairRules{.sectors = 0});
   };
@@ -189,4 +189,4 @@ TEST(PairsAnywhereOnEarth, AreTheSame) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -8,18 +8,18 @@
 
 #include "tests/prepare/poses/made_photos.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 const geo::Geodetic kOrigin{47.0, 8.0, 400.0};
 
-void Look(PhotoFile& photo, double pitch_deg, double yaw_deg) {
+void Look(input::PhotoFile& photo, double pitch_deg, double yaw_deg) {
   photo.tags.gimbal_pitch_deg = pitch_deg;
   photo.tags.gimbal_yaw_deg = yaw_deg;
 }
 
 TEST(FindPlaces, GimbalAnglesMoveTheTarget) {
-  std::vector<PhotoFile> photos = test::GridPhotos(2, 3, 20.0, 30.0, kOrigin);
+  std::vector<input::PhotoFile> photos = test::GridPhotos(2, 3, 20.0, 30.0, kOrigin);
   Look(photos[0], -45.0, 90.0);    // 100 m to the east
   Look(photos[1], -45.0, -180.0);  // to the south
   Look(photos[2], 0.0, 0.0);       // to the horizon: limited
@@ -35,16 +35,16 @@ TEST(FindPlaces, GimbalAnglesMoveTheTarget) {
 }
 
 TEST(FindPlaces, AYawThatIsAlwaysTheSameIsNotBelieved) {
-  std::vector<PhotoFile> photos = test::GridPhotos(2, 3, 20.0, 30.0, kOrigin);
+  std::vector<input::PhotoFile> photos = test::GridPhotos(2, 3, 20.0, 30.0, kOrigin);
   EXPECT_FALSE(HasObliquePhotos(FindPlaces(photos)));
-  for (PhotoFile& photo : photos) Look(photo, -45.0, 0.0);
+  for (input::PhotoFile& photo : photos) Look(photo, -45.0, 0.0);
   EXPECT_FALSE(HasObliquePhotos(FindPlaces(photos)));
   Look(photos[0], -45.0, 1.0);
   EXPECT_TRUE(HasObliquePhotos(FindPlaces(photos)));
 }
 
 TEST(FindPlaces, ImpossibleAnglesAndHeightsAreNotUsed) {
-  std::vector<PhotoFile> photos = test::GridPhotos(2, 3, 20.0, 30.0, kOrigin);
+  std::vector<input::PhotoFile> photos = test::GridPhotos(2, 3, 20.0, 30.0, kOrigin);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Look(photos[0], 80.0, 10.0);
   Look(photos[1], nan, 20.0);
@@ -59,21 +59,21 @@ TEST(FindPlaces, ImpossibleAnglesAndHeightsAreNotUsed) {
 }
 
 TEST(FindPlaces, PhotosWithoutAPositionHaveNone) {
-  std::vector<PhotoFile> photos = test::GridPhotos(2, 3, 20.0, 30.0, kOrigin);
+  std::vector<input::PhotoFile> photos = test::GridPhotos(2, 3, 20.0, 30.0, kOrigin);
   photos[1].tags.gps.reset();
   photos[2].tags.gps->latitude_deg = std::numeric_limits<double>::quiet_NaN();
   photos[3].tags.gps->height_m = std::numeric_limits<double>::quiet_NaN();
   const auto places = FindPlaces(photos);
   EXPECT_TRUE(places[0] && !places[1] && !places[2] && places[3]);
-  for (PhotoFile& photo : photos) photo.tags.gps.reset();
+  for (input::PhotoFile& photo : photos) photo.tags.gps.reset();
   for (const auto& place : FindPlaces(photos)) EXPECT_FALSE(place);
   EXPECT_TRUE(FindPlaces({}).empty());
 }
 
 // Columns of a facade: one position on the map, other heights.
 TEST(FindPlaces, HeightsTellPhotosApart) {
-  const std::vector<PhotoFile> feet = test::GridPhotos(1, 2, 20.0, 30.0, kOrigin);
-  std::vector<PhotoFile> photos = test::GridPhotos(1, 12, 20.0, 30.0, kOrigin);
+  const std::vector<input::PhotoFile> feet = test::GridPhotos(1, 2, 20.0, 30.0, kOrigin);
+  std::vector<input::PhotoFile> photos = test::GridPhotos(1, 12, 20.0, 30.0, kOrigin);
   for (size_t i = 0; i < photos.size(); ++i) {
     photos[i].tags.gps = feet[i / 6].tags.gps;
     photos[i].tags.gps->height_m += 3.0 * static_cast<double>(i % 6);
@@ -88,7 +88,7 @@ TEST(FindPlaces, HeightsTellPhotosApart) {
 }
 
 TEST(FindPlaces, ExposuresOfOneShotNeedNotDiffer) {
-  std::vector<PhotoFile> photos = test::GridPhotos(3, 12, 20.0, 30.0, kOrigin);
+  std::vector<input::PhotoFile> photos = test::GridPhotos(3, 12, 20.0, 30.0, kOrigin);
   for (size_t i = 0; i < photos.size(); ++i) {
     photos[i].tags.gps = photos[i / 3 * 3].tags.gps;
     photos[i].tags.capture_time_s = 5.0 * static_cast<double>(i / 3) + 0.5 * static_cast<double>(i % 3);
@@ -101,12 +101,12 @@ TEST(FindPlaces, ExposuresOfOneShotNeedNotDiffer) {
 }
 
 TEST(FindPlaces, EqualPositionsTellNothing) {
-  std::vector<PhotoFile> photos = test::GridPhotos(3, 4, 20.0, 30.0, kOrigin);
+  std::vector<input::PhotoFile> photos = test::GridPhotos(3, 4, 20.0, 30.0, kOrigin);
   for (size_t i = 0; i < 12; i += 2) photos[i].tags.gps = photos[i + 1].tags.gps;  // every spot twice
   for (const auto& place : FindPlaces(photos)) EXPECT_TRUE(place);
-  for (PhotoFile& photo : photos) photo.tags.gps = photos[0].tags.gps;
+  for (input::PhotoFile& photo : photos) photo.tags.gps = photos[0].tags.gps;
   for (const auto& place : FindPlaces(photos)) EXPECT_FALSE(place);
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

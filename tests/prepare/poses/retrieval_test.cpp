@@ -8,7 +8,7 @@
 #include "core/base/errors.h"
 #include "tests/prepare/poses/made_photos.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 constexpr size_t kPlaces = 2, kPhotosPerPlace = 15, kIndexedPhotos = kPlaces * kPhotosPerPlace;
@@ -123,4 +123,4 @@ TEST(LearnWords, AreMeansOfWhatIsNearest) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -8,10 +8,10 @@
 #include "core/base/log.h"
 #include "core/survey/colmap_model.h"
 #include "tests/prepare/poses/fake_colmap.h"
-#include "tests/prepare/seeded/made_survey.h"
+#include "tests/prepare/poses/seed/made_survey.h"
 #include "tests/support/made_database.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 void AddCamera(test::MadeDatabase& database, int id, const camera::Camera& camera) {
@@ -42,7 +42,7 @@ class SeededWay : public test::FakeColmap {
     for (size_t i = 0; i < made_.input.photos.size(); ++i) {
       const SeedPhoto& photo = made_.input.photos[i];
       base::WriteFileAtomically(folder_ / ("images/" + photo.name), "pixels");
-      PhotoFile file{.name = photo.name, .width = 1600, .height = 1200, .tags = {}};
+      input::PhotoFile file{.name = photo.name, .width = 1600, .height = 1200, .tags = {}};
       file.tags.gps = photo.gps;
       file.tags.gimbal_yaw_deg = photo.yaw_deg;
       file.tags.gimbal_pitch_deg = photo.pitch_deg;
@@ -102,7 +102,7 @@ TEST_F(SeededWay, OtherTagsAreTriedAnew) {
   Find();
   Calls();
   // Neither features nor the choice of pairs depend on the roll.
-  for (PhotoFile& photo : photos_) *photo.tags.gimbal_roll_deg += 1.0;
+  for (input::PhotoFile& photo : photos_) *photo.tags.gimbal_roll_deg += 1.0;
   const auto before = std::filesystem::last_write_time(job_.folder / "seeded" / "images.bin");
   EXPECT_EQ(Find(), Seeded());
   EXPECT_EQ(Calls(), "");
@@ -120,12 +120,12 @@ TEST_F(SeededWay, WrongTagsLeaveItToTheMapper) {
 
 // Right tags after wrong ones, and the other way round: no model of the other tags is left over.
 TEST_F(SeededWay, FollowsTheTags) {
-  const std::vector<PhotoFile> right = photos_;
-  for (PhotoFile& photo : photos_) photo.tags.gps.reset();
+  const std::vector<input::PhotoFile> right = photos_;
+  for (input::PhotoFile& photo : photos_) photo.tags.gps.reset();
   EXPECT_EQ(Find(), FirstModel());
   photos_ = right;
   EXPECT_EQ(Find(), Seeded());
-  for (PhotoFile& photo : photos_) photo.tags.gps.reset();
+  for (input::PhotoFile& photo : photos_) photo.tags.gps.reset();
   EXPECT_EQ(Find(), FirstModel());
   EXPECT_FALSE(std::filesystem::exists(Seeded()));
 }
@@ -156,8 +156,8 @@ TEST_F(SeededWay, ADatabaseWithoutPlacesOfFeaturesIsLeftToTheMapper) {
 
 TEST(SeedInput, TellsGuessedFocalLengthsAndTagsApart) {
   const geo::EnuFrame frame({47.0, 8.0, 400.0});
-  const std::vector<PhotoFile> photos = {test::PhotoAt(0, {0.0, 0.0}, frame), test::PhotoAt(1, {9.0, 0.0}, frame)};
-  std::vector<PhotoFile> other = photos;
+  const std::vector<input::PhotoFile> photos = {test::PhotoAt(0, {0.0, 0.0}, frame), test::PhotoAt(1, {9.0, 0.0}, frame)};
+  std::vector<input::PhotoFile> other = photos;
   EXPECT_EQ(SeedInputs(photos), SeedInputs(other));
   other[1].tags.gps->height_m += 0.01;
   EXPECT_NE(SeedInputs(photos), SeedInputs(other));
@@ -183,4 +183,4 @@ TEST(SeedInput, TellsGuessedFocalLengthsAndTagsApart) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

@@ -16,7 +16,7 @@
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::poses {
 namespace {
 
 // A camera at x that looks along the direction.
@@ -70,7 +70,7 @@ TEST(TriangulatePoints, OfARealModelLieWhereItsOwnPointsWere) {
   const survey::ColmapModel given = survey::ReadColmapModel(folder / "sparse/0");
   survey::ColmapModel poses;
   poses.cameras = given.cameras;
-  std::vector<PhotoFile> photos;
+  std::vector<input::PhotoFile> photos;
   std::map<uint32_t, survey::ColmapImage> images;
   std::map<std::string, survey::ColmapImage> by_name;
   for (const survey::ColmapImage& image : given.images) by_name.emplace(image.name, image);
@@ -129,4 +129,4 @@ TEST(TriangulatePoints, OfARealModelLieWhereItsOwnPointsWere) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::poses

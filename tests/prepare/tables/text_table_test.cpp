@@ -6,7 +6,7 @@
 #include "core/base/text.h"
 #include "tests/support/error_of.h"
 
-namespace skyquilt::prepare {
+namespace skyquilt::prepare::tables {
 namespace {
 
 using Fields = std::vector<std::string>;
@@ -115,4 +115,4 @@ RC_GTEST_PROP(TextTableProperty, FieldsReadBackTheSameInEveryDialect, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::prepare
+}  // namespace skyquilt::prepare::tables

@@ -1,0 +1,158 @@
+#include "prepare/bundle/bundle_costs.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "core/base/random.h"
+#include "prepare/poses/seed/seed_rotation.h"
+
+namespace skyquilt::test {
+namespace {
+
+using namespace prepare::bundle;
+
+PoseNumbers RandomPose(base::Random& random) {
+  const double yaw = random.Uniform(0.0, 360.0), pitch = random.Uniform(-90.0, -40.0);
+  const Eigen::Quaterniond rotation = prepare::poses::RotationFromAngles(yaw, pitch, random.Uniform(-10.0, 10.0));
+  PoseNumbers pose{};
+  Eigen::Map<Eigen::Vector4d>(pose.data()) = rotation.coeffs();
+  for (size_t k = 4; k < 7; ++k) pose[k] = random.Uniform(-20.0, 20.0);
+  pose[6] += 80.0;
+  return pose;
+}
+
+// Compares all derivatives with central differences; blocks of seven numbers change by PoseManifold.
+void ExpectDerivatives(const ceres::CostFunction& cost, std::vector<std::vector<double>> blocks) {
+  const PoseManifold manifold;
+  const auto n_residuals = static_cast<size_t>(cost.num_residuals());
+  std::vector<const double*> pointers;
+  std::vector<std::vector<double>> jacobians;
+  std::vector<double*> jacobian_pointers;
+  for (const auto& block : blocks) jacobians.emplace_back(n_residuals * block.size());
+  for (size_t k = 0; k < blocks.size(); ++k) {
+    pointers.push_back(blocks[k].data());
+    jacobian_pointers.push_back(jacobians[k].data());
+  }
+  std::vector<double> residuals(n_residuals);
+  ASSERT_TRUE(cost.Evaluate(pointers.data(), residuals.data(), jacobian_pointers.data()));
+  for (size_t k = 0; k < blocks.size(); ++k) {
+    const bool is_pose = blocks[k].size() == 7;
+    const std::vector<double> at = blocks[k];
+    for (size_t column = 0; column < (is_pose ? 6 : at.size()); ++column) {
+      const double step = 1e-6 * std::max(1.0, is_pose ? 1.0 : std::abs(at[column]));
+      std::vector<double> side[2];
+      for (int s = 0; s < 2; ++s) {
+        const double change = s == 0 ? step : -step;
+        if (is_pose) {
+          std::vector<double> delta(6, 0.0);
+          delta[column] = change;
+          ASSERT_TRUE(manifold.Plus(at.data(), delta.data(), blocks[k].data()));
+        } else {
+          blocks[k] = at;
+          blocks[k][column] += change;
+        }
+        side[s].resize(n_residuals);
+        ASSERT_TRUE(cost.Evaluate(pointers.data(), side[s].data(), nullptr));
+      }
+      std::copy(at.begin(), at.end(), blocks[k].begin());
+      for (size_t r = 0; r < n_residuals; ++r) {
+        const double expected = (side[0][r] - side[1][r]) / (2.0 * step);
+        EXPECT_NEAR(jacobians[k][r * at.size() + column], expected, 1e-5 * std::max(1.0, std::abs(expected)))
+            << "bundle " << k << ", row " << r << ", column " << column;
+      }
+    }
+  }
+}
+
+std::vector<double> Numbers(const auto& array) {
+  return {array.begin(), array.end()};
+}
+
+TEST(BundleCosts, ReprojectionHasTheDerivativesOfItsValue) {
+  base::Random random(1);
+  for (int k = 0; k < 20; ++k) {
+    const Lens lens = {1200.0, 1.01, 800.0, 600.0, random.Uniform(-0.1, 0.1), random.Uniform(-0.05, 0.05), 1e-3, -2e-3};
+    const std::vector<double> point = {random.Uniform(-20.0, 20.0), random.Uniform(-20.0, 20.0), random.Uniform(-5.0, 5.0)};
+    ExpectDerivatives(ReprojectionCost({700.0, 500.0}, 2.0), {Numbers(RandomPose(random)), Numbers(lens), point});
+  }
+}
+
+TEST(BundleCosts, TagsHaveTheDerivativesOfTheirValue) {
+  base::Random random(2);
+  for (int k = 0; k < 20; ++k) {
+    const PoseNumbers pose = RandomPose(random);
+    ExpectDerivatives(PlaceCost({1.0, 2.0, 70.0}, {3.0, 3.0, 5.0}), {Numbers(pose)});
+    // From no turn at all to nearly half a turn.
+    const Eigen::Vector3d axis = Eigen::Vector3d{random.Normal(), random.Normal(), random.Normal()}.normalized();
+    const Eigen::Quaterniond tagged = Eigen::AngleAxisd(0.15 * k, axis) * Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(pose.data()));
+    ExpectDerivatives(TurnCost(tagged, 0.05), {Numbers(pose)});
+  }
+}
+
+TEST(BundleCosts, SharedShiftsAndKnownPointsHaveTheDerivativesOfTheirValue) {
+  base::Random random(4);
+  for (int k = 0; k < 20; ++k) {
+    const std::vector<double> shift = {random.Normal(), random.Normal(), 20.0 * random.Normal()};
+    ExpectDerivatives(ShiftedPlaceCost({1.0, 2.0, 70.0}, {3.0, 3.0, 5.0}), {Numbers(RandomPose(random)), shift});
+    ExpectDerivatives(KnownPointCost({1.0, 2.0, 3.0}, {0.5, 0.25, 2.0}), {shift});
+  }
+}
+
+TEST(BundleCosts, AnInfiniteSigmaLeavesItsAxisFree) {
+  const KnownPointCost cost({1.0, 2.0, 0.0}, {0.5, 0.5, std::numeric_limits<double>::infinity()});
+  const Eigen::Vector3d point(1.5, 2.0, 999.0);
+  const double* parameters[] = {point.data()};
+  Eigen::Vector3d residual;
+  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> jacobian;
+  double* jacobians[] = {jacobian.data()};
+  ASSERT_TRUE(cost.Evaluate(parameters, residual.data(), jacobians));
+  EXPECT_EQ(residual, Eigen::Vector3d(1.0, 0.0, 0.0));
+  EXPECT_EQ(jacobian, Eigen::Matrix3d(Eigen::Vector3d(2.0, 2.0, 0.0).asDiagonal()));
+}
+
+TEST(BundleCosts, LensPrior) {
+  const Lens expected = {1200.0, 1.0, 800.0, 600.0, 0.0, 0.0, 0.0, 0.0}, sigma = {100.0, 0.01, 10.0, 10.0, 0.3, 0.3, 0.01, 0.01};
+  const Lens at = {1300.0, 1.0, 800.0, 600.0, 0.3, 0.0, 0.0, 0.0};
+  ExpectDerivatives(LensCost(expected, sigma), {Numbers(at)});
+}
+
+TEST(PoseManifold, MinusUndoesPlus) {
+  const PoseManifold manifold;
+  base::Random random(3);
+  for (int k = 0; k < 50; ++k) {
+    const PoseNumbers pose = RandomPose(random);
+    std::array<double, 6> delta{}, back{};
+    for (double& d : delta) d = random.Uniform(-1.0, 1.0);
+    PoseNumbers moved{};
+    ASSERT_TRUE(manifold.Plus(pose.data(), delta.data(), moved.data()));
+    ASSERT_TRUE(manifold.Minus(moved.data(), pose.data(), back.data()));
+    for (size_t i = 0; i < delta.size(); ++i) EXPECT_NEAR(back[i], delta[i], 1e-12);
+  }
+}
+
+TEST(Lens, IsTheCameraOfEveryModel) {
+  const std::vector<camera::Camera> cameras = {{camera::CameraModel::kSimplePinhole, 1600, 1200, {1200.0, 790.0, 610.0}},
+                                               {camera::CameraModel::kPinhole, 1600, 1200, {1200.0, 1210.0, 790.0, 610.0}},
+                                               {camera::CameraModel::kSimpleRadial, 1600, 1200, {1200.0, 790.0, 610.0, -0.05}},
+                                               {camera::CameraModel::kRadial, 1600, 1200, {1200.0, 790.0, 610.0, -0.05, 0.02}},
+                                               {camera::CameraModel::kOpencv, 1600, 1200, {1200.0, 1210.0, 790.0, 610.0, -0.05, 0.02, 1e-3, -2e-3}}};
+  for (const camera::Camera& camera : cameras) {
+    const auto lens = LensOf(camera);
+    ASSERT_TRUE(lens);
+    const camera::Camera back = CameraOf(*lens, camera);
+    for (size_t k = 0; k < camera.params.size(); ++k) EXPECT_NEAR(back.params[k], camera.params[k], 1e-9);
+    for (const double x : {-0.5, 0.0, 0.4}) {
+      for (const double y : {-0.3, 0.2}) {
+        const Eigen::Vector3d point(4.0 * x, 4.0 * y, 4.0);
+        EXPECT_LT((Project(*lens, point, nullptr) - *camera.ImgFromCam(point)).norm(), 1e-9) << camera::ModelName(camera.model);
+      }
+    }
+  }
+  EXPECT_FALSE(LensOf({camera::CameraModel::kOpencvFisheye, 1600, 1200, std::vector<double>(8, 1.0)}));
+}
+
+}  // namespace
+}  // namespace skyquilt::test

@@ -1,0 +1,235 @@
+#include "prepare/georeference/georeference.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/random.h"
+#include "core/geo/enu_frame.h"
+#include "core/linear/linear.h"
+#include "tests/prepare/synthetic_flight.h"
+
+namespace skyquilt::prepare::georeference {
+namespace {
+
+std::vector<input::Station> Stations(const test::Flight& flight) {
+  std::vector<input::Station> stations;
+  for (size_t i = 0; i < flight.photos.size(); ++i) {
+    stations.push_back(input::MakeStation(flight.photos[i].name, flight.model.images[i].cam_from_world, flight.photos[i].tags));
+  }
+  return stations;
+}
+
+std::vector<Eigen::Vector3d> Points(const test::Flight& flight) {
+  std::vector<Eigen::Vector3d> points;
+  for (const survey::ColmapPoint& point : flight.model.points) points.push_back(point.x_in_world);
+  return points;
+}
+
+Georeference Place(const test::Flight& flight, const PlaceOptions& options = {}) {
+  return PlaceOnEarth(Stations(flight), Points(flight), options);
+}
+
+TEST(Georeference, ExactTagsAreRecoveredEverywhereOnEarth) {
+  const geo::Geodetic places[] = {{46.8, -92.0, 150.0}, {-33.9, 151.2, 20.0}, {31.5, 35.5, -430.0}, {10.0, 180.0, 0.0},  {-16.8, -179.9999, 5.0},
+                                  {90.0, 0.0, 10.0},    {-90.0, 0.0, 2800.0}, {89.9999, 45.0, 0.0}, {27.9, 86.9, 8900.0}};
+  for (const geo::Geodetic& place : places) {
+    const test::Flight flight = test::MakeFlight(place);
+    const Georeference result = Place(flight);
+    ASSERT_TRUE(result.ok) << "at " << place.latitude_deg;
+    EXPECT_LT(result.fit.rmse_m, 1e-3) << place.latitude_deg << " " << place.longitude_deg;
+    EXPECT_EQ(result.fit.n_inliers, 20);
+    EXPECT_NEAR(result.fit.scale, 1.0 / 0.07, 1e-3);
+    // The origin is near the flight, so coordinates stay small.
+    const Eigen::Vector3d first = result.enu_from_model * flight.model.images[0].cam_from_world.OriginInSource();
+    EXPECT_LT(first.norm(), 200.0);
+    const geo::EnuFrame fitted(result.origin);
+    const geo::EnuFrame tagged(place);
+    const Eigen::Vector3d back = tagged.EnuFromGeodetic(fitted.GeodeticFromEnu(first));
+    EXPECT_LT((back - flight.photos[0].centre_in_enu).norm(), 1e-2);
+  }
+}
+
+TEST(Georeference, OutliersAreFoundAndDoNotPull) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  test::SetTags(flight, [](size_t i, const Eigen::Vector3d& centre) {
+    return i % 5 == 2 ? Eigen::Vector3d(centre + Eigen::Vector3d(300.0, -150.0 * static_cast<double>(i), 60.0)) : centre;
+  });
+  const Georeference result = Place(flight);
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.fit.n_matches, 20);
+  EXPECT_EQ(result.fit.n_inliers, 16);
+  EXPECT_LT(result.fit.rmse_m, 1e-3);
+  for (size_t i = 0; i < 20; ++i) EXPECT_EQ(result.inlier[i] != 0, i % 5 != 2);
+  EXPECT_GT(result.residual_m[2].norm(), 300.0);
+}
+
+TEST(Georeference, ARefusedFitLeavesNoAccuracyBehind) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  for (test::FlightPhoto& photo : flight.photos) photo.tags.gps = geo::Geodetic{photo.tags.gps->longitude_deg, photo.tags.gps->latitude_deg, 400.0};
+  const Georeference result = Place(flight);
+  ASSERT_FALSE(result.ok);
+  EXPECT_EQ(result.problems.front().code, "swapped_coordinates");
+  EXPECT_TRUE(std::isnan(result.fit.accuracy.horizontal_m));
+  EXPECT_TRUE(std::isnan(result.fit.accuracy.scale_percent));
+  EXPECT_TRUE(std::isnan(result.fit.rmse_m));
+  EXPECT_TRUE(result.fit.flight_vertical_drift_m.empty());
+}
+
+// Pitch of +90 at nadir: gimbal angles outweigh everything else, and a survey that hangs upside down looks mirrored to its GPS tags.
+TEST(Georeference, GimbalAnglesThatStandAloneAreDropped) {
+  const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  std::vector<input::Station> stations = Stations(flight);
+  const Georeference without = PlaceOnEarth(stations, Points(flight), {});
+  for (input::Station& station : stations) station.up_in_cam = input::UpInCamera(90.0, 0.0);
+  const Georeference result = PlaceOnEarth(stations, Points(flight), {});
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.gimbal.use, GimbalUse::kDropped);
+  EXPECT_EQ(result.fit.n_inliers, 20);
+  EXPECT_EQ(result.enu_from_model.scale, without.enu_from_model.scale);
+  EXPECT_EQ(result.enu_from_model.rotation.coeffs(), without.enu_from_model.rotation.coeffs());
+  EXPECT_EQ(result.enu_from_model.translation, without.enu_from_model.translation);
+  // Right angles are used.
+  for (input::Station& station : stations) station.up_in_cam = input::UpInCamera(-90.0, 0.0);
+  const Georeference right = PlaceOnEarth(stations, Points(flight), {});
+  EXPECT_EQ(right.gimbal.use, GimbalUse::kUsed);
+  EXPECT_EQ(right.fit.gravity.front().kind, "gimbal");
+}
+
+TEST(Georeference, AJumpLeavesTwoGroups) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  test::SetTags(
+      flight, [](size_t i, const Eigen::Vector3d& centre) { return i < 12 ? centre : Eigen::Vector3d(centre + Eigen::Vector3d(25.0, -15.0, 10.0)); });
+  const Georeference result = Place(flight);
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.fit.n_inliers, 12);
+  const auto group = std::find_if(result.problems.begin(), result.problems.end(), [](const auto& problem) { return problem.code == "two_groups"; });
+  ASSERT_NE(group, result.problems.end());
+  // 0.4 of the tags are 29 m away: two standard deviations reach the mean of both groups.
+  EXPECT_GT(result.fit.accuracy.horizontal_m, 0.5 * 0.4 * 29.0);
+}
+
+TEST(Georeference, FlightsThatDisagreeGetOneOffsetEach) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  // Lines flown alternately on two days; heights of the second day are 15 m too high.
+  for (size_t i = 0; i < 20; ++i) flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + (i % 3 == 1 ? 86400.0 : 0.0);
+  test::SetTags(flight,
+                [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(0.0, 0.0, i % 3 == 1 ? 15.0 : 0.0)); });
+  const Georeference result = Place(flight);
+  ASSERT_TRUE(result.ok);
+  ASSERT_EQ(result.fit.flight_vertical_offset_m.size(), 2U);
+  EXPECT_EQ(result.fit.flight_vertical_offset_m[0], 0.0);  // the larger flight is the reference
+  EXPECT_NEAR(result.fit.flight_vertical_offset_m[1], -15.0, 0.05);
+  EXPECT_EQ(result.fit.n_inliers, 20);
+  EXPECT_LT(result.fit.rmse_m, 0.05);
+
+  PlaceOptions off;
+  off.flight_offsets = "off";
+  const Georeference without = Place(flight, off);
+  EXPECT_TRUE(without.fit.flight_vertical_offset_m.empty());
+  EXPECT_LT(without.fit.n_inliers, 20);
+}
+
+TEST(Georeference, FlightsThatAgreeAreNotMovedApart) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  for (size_t i = 10; i < 20; ++i) flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + 86400.0;
+  base::Random random(5);
+  test::SetTags(flight, [&](size_t, const Eigen::Vector3d& centre) {
+    return Eigen::Vector3d(centre + Eigen::Vector3d{random.Normal(), random.Normal(), 2.0 * random.Normal()});
+  });
+  const Georeference result = Place(flight);
+  EXPECT_EQ(result.flight[9], 0);
+  EXPECT_EQ(result.flight[10], 1);
+  for (const double offset_m : result.fit.flight_vertical_offset_m) EXPECT_LT(std::abs(offset_m), 2.0);
+  for (const double drift_m : result.fit.flight_vertical_drift_m) EXPECT_LT(std::abs(drift_m), 2.0);
+}
+
+TEST(Georeference, TheRtkFlightIsTheReference) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  for (size_t i = 0; i < 20; ++i) {
+    flight.photos[i].tags.rtk = i % 3 == 1;
+    flight.photos[i].tags.capture_time_s = *flight.photos[i].tags.capture_time_s + (i % 3 == 1 ? 86400.0 : 0.0);
+  }
+  test::SetTags(flight,
+                [](size_t i, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(0.0, 0.0, i % 3 == 1 ? 0.0 : 15.0)); });
+  const Georeference result = Place(flight);
+  ASSERT_EQ(result.fit.flight_vertical_offset_m.size(), 2U);
+  EXPECT_NEAR(result.fit.flight_vertical_offset_m[0], -15.0, 0.05);
+  EXPECT_EQ(result.fit.flight_vertical_offset_m[1], 0.0);
+}
+
+TEST(Georeference, TooFewOrOnePlaceIsNotOk) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  std::vector<input::Station> stations = Stations(flight);
+  for (size_t i = 2; i < stations.size(); ++i) stations[i].gps.reset();
+  EXPECT_FALSE(PlaceOnEarth(stations, {}, {}).ok);
+  for (input::Station& station : stations) station.gps.reset();
+  EXPECT_FALSE(PlaceOnEarth(stations, {}, {}).ok);
+  EXPECT_FALSE(PlaceOnEarth({}, {}, {}).ok);
+  test::SetTags(flight, [](size_t, const Eigen::Vector3d&) { return Eigen::Vector3d(1.0, 2.0, 3.0); });
+  const Georeference one_place = Place(flight);
+  EXPECT_FALSE(one_place.ok);
+  EXPECT_EQ(one_place.problems.front().code, "equal_tags");
+}
+
+TEST(Georeference, AnExactFrameStaysAndStillReportsResiduals) {
+  test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  test::SetTags(flight, [](size_t, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(3.0, 0.0, 4.0)); });
+  std::vector<input::Station> stations = Stations(flight);
+  for (size_t i = 0; i < stations.size(); ++i) {
+    stations[i].cam_from_model.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+    stations[i].cam_from_model.translation = -(stations[i].cam_from_model.rotation * flight.photos[i].centre_in_enu);
+  }
+  const Georeference result = KeepExactFrame(stations, flight.origin, {});
+  EXPECT_EQ(result.enu_from_model.scale, 1.0);
+  EXPECT_EQ(result.enu_from_model.translation, Eigen::Vector3d::Zero());
+  EXPECT_NEAR(result.fit.rmse_m, 5.0, 1e-3);
+  EXPECT_NEAR(result.fit.rmse_horizontal_m, 3.0, 1e-3);
+  EXPECT_NEAR(result.fit.rmse_vertical_m, 4.0, 1e-3);
+}
+
+TEST(SplitFlights, GoesByTimeNotByName) {
+  std::vector<input::Station> stations(6);
+  const double times[] = {1000.0, 0.0, 5000.0, 500.0, -1.0, 5100.0};
+  for (size_t i = 0; i < 6; ++i) {
+    if (times[i] >= 0.0) stations[i].time_s = times[i];
+  }
+  EXPECT_EQ(input::SplitFlights(stations, 900.0), (std::vector<int>{0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(input::SplitFlights(stations, 400.0), (std::vector<int>{2, 0, 3, 1, 1, 3}));
+  EXPECT_TRUE(input::SplitFlights({}, 900.0).empty());
+}
+
+TEST(LocalFrame, PutsTheGroundBelowAtAFixedDepth) {
+  const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
+  const std::vector<input::Station> stations = Stations(flight);
+  const geo::Similarity3d local = LocalFrame(stations, Points(flight), FindGravity(stations, Points(flight)).up);
+  EXPECT_NEAR((local.rotation * (flight.model_from_enu.rotation * Eigen::Vector3d::UnitZ())).z(), 1.0, 1e-5);
+  EXPECT_NEAR((local * stations[7].cam_from_model.OriginInSource()).z(), kLocalDepth, 5.0);
+}
+
+TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirHorizons) {
+  std::vector<input::Station> stations;
+  const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
+  const Eigen::Quaterniond tilt = linear::RotationBetween(Eigen::Vector3d::UnitZ(), up);
+  for (int i = 0; i < 12; ++i) {
+    const double angle = i * M_PI / 6.0;
+    const Eigen::Vector3d centre(10.0 * std::cos(angle), 10.0 * std::sin(angle), 4.0);
+    const Eigen::Vector3d forward = (-centre).normalized();
+    const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+    Eigen::Matrix3d world_from_cam;
+    world_from_cam << right, forward.cross(right), forward;
+    input::Station station;
+    station.cam_from_model.rotation = Eigen::Quaterniond(world_from_cam).conjugate() * tilt.conjugate();
+    station.cam_from_model.translation = -(station.cam_from_model.rotation * (tilt * centre));
+    stations.push_back(station);
+  }
+  const std::vector<Eigen::Vector3d> points = {Eigen::Vector3d::Zero(), tilt * Eigen::Vector3d(1.0, 1.0, 0.0),
+                                               tilt * Eigen::Vector3d(-1.0, 0.5, 0.0)};
+  const geo::Similarity3d local = LocalFrame(stations, points, FindGravity(stations, points).up);
+  EXPECT_NEAR((local.rotation * up).z(), 1.0, 1e-9);
+  EXPECT_GT((local * stations[0].cam_from_model.OriginInSource()).z(), 0.0);
+}
+
+}  // namespace
+}  // namespace skyquilt::prepare::georeference

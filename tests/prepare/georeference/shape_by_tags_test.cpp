@@ -1,0 +1,62 @@
+#include "prepare/georeference/shape_by_tags.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/base/random.h"
+
+namespace skyquilt::test {
+namespace {
+
+using namespace prepare::georeference;
+
+// A grid of stations in ENU and a geo-reference whose residuals in height have the form of a dome of so much height, with noise.
+void MakeFlight(double dome_m, double noise_m, std::vector<prepare::input::Station>* stations, Georeference* georeference) {
+  base::Random random(2, 1);
+  georeference->ok = true;
+  for (int i = 0; i < 64; ++i) {
+    const Eigen::Vector3d centre(20.0 * (i % 8) - 70.0, 20.0 * (i / 8) - 70.0, 60.0);
+    prepare::input::Station station;
+    station.name = std::to_string(i);
+    station.cam_from_model = {Eigen::Quaterniond::Identity(), -centre};
+    station.gps = geo::Geodetic{47.0, 8.0, 560.0};
+    station.time_s = 2.0 * i;
+    stations->push_back(station);
+    const double square = centre.head<2>().squaredNorm() / (90.0 * 90.0);
+    georeference->residual_m.emplace_back(0.0, 0.0, -dome_m * square + noise_m * random.Normal());
+    georeference->correction_m.push_back(Eigen::Vector3d::Zero());
+    georeference->inlier.push_back(1);
+  }
+}
+
+bool Tells(double dome_m, double noise_m, double rtk_share = 0.0, bool placed = true) {
+  std::vector<prepare::input::Station> stations;
+  Georeference georeference;
+  MakeFlight(dome_m, noise_m, &stations, &georeference);
+  georeference.ok = placed;
+  for (size_t i = 0; i < stations.size(); ++i) stations[i].rtk = static_cast<double>(i) < rtk_share * static_cast<double>(stations.size());
+  return TagsTellTheShape(stations, georeference);
+}
+
+TEST(TagsTellTheShape, WhenABendIsClearOrTheTagsAreRtk) {
+  EXPECT_TRUE(Tells(2.0, 0.3));
+  EXPECT_TRUE(Tells(-2.0, 0.3));
+  EXPECT_FALSE(Tells(0.0, 0.3));
+  EXPECT_FALSE(Tells(0.3, 0.01));  // nothing to bother about
+  EXPECT_FALSE(Tells(1.0, 4.0));   // lost in noise
+  EXPECT_TRUE(Tells(0.0, 0.3, 0.9));
+  EXPECT_FALSE(Tells(0.0, 0.3, 0.3));
+  EXPECT_FALSE(Tells(2.0, 0.3, 1.0, false));
+}
+
+TEST(TagsTellTheShape, NotWithoutHeights) {
+  std::vector<prepare::input::Station> stations;
+  Georeference georeference;
+  MakeFlight(2.0, 0.1, &stations, &georeference);
+  for (Eigen::Vector3d& residual : georeference.residual_m) residual.z() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(TagsTellTheShape(stations, georeference));
+}
+
+}  // namespace
+}  // namespace skyquilt::test

@@ -3,7 +3,7 @@
 
 #include "core/base/thread_pool.h"
 #include "evaluate/evaluate_input.h"
-#include "evaluate/metrics.h"
+#include "evaluate/metrics/metrics.h"
 
 namespace skyquilt::evaluate {
 

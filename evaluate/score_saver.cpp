@@ -9,7 +9,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/system.h"
-#include "evaluate/scored_pixels.h"
+#include "evaluate/photos/scored_pixels.h"
 
 namespace skyquilt::evaluate {
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "evaluate/evaluate_input.h"
+#include "evaluate/metrics/summary.h"
+#include "evaluate/page/written_pictures.h"
 #include "evaluate/progress_file.h"
-#include "evaluate/summary.h"
-#include "evaluate/surface_photo_scores.h"
-#include "evaluate/written_pictures.h"
+#include "evaluate/surface/photo_errors.h"
 
 namespace skyquilt::evaluate {
 

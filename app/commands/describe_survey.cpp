@@ -4,7 +4,7 @@
 #include "app/commands/describe.h"
 #include "app/commands/describe_number.h"
 #include "core/survey/survey.h"
-#include "evaluate/control_summary.h"
+#include "evaluate/control/control_summary.h"
 
 namespace skyquilt::app {
 namespace {

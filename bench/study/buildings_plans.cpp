@@ -2,8 +2,8 @@
 
 #include "bench/study/buildings_parts.h"
 #include "core/page/html.h"
-#include "evaluate/buildings_scorer.h"
-#include "evaluate/map_frame.h"
+#include "evaluate/buildings/buildings_scorer.h"
+#include "evaluate/page/drawn_map.h"
 
 namespace skyquilt::bench {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/base/order_statistics.h"
 #include "core/base/random.h"
-#include "evaluate/buildings_errors.h"
+#include "evaluate/buildings/measure_errors.h"
 
 namespace skyquilt::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/study/study.h"
-#include "evaluate/buildings_scores.h"
+#include "evaluate/buildings/building_scores.h"
 
 namespace skyquilt::bench {
 

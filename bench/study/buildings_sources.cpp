@@ -11,7 +11,7 @@
 #include "core/base/errors.h"
 #include "core/config/options.h"
 #include "core/scene/scene.h"
-#include "evaluate/buildings_scorer.h"
+#include "evaluate/buildings/buildings_scorer.h"
 #include "partition/block.h"
 #include "products/map_area.h"
 #include "products/map_rays.h"

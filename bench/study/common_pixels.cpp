@@ -11,8 +11,8 @@
 
 #include "core/image/image.h"
 #include "core/metrics/psnr.h"
-#include "evaluate/metrics.h"
-#include "evaluate/scored_pixels.h"
+#include "evaluate/metrics/metrics.h"
+#include "evaluate/photos/scored_pixels.h"
 
 namespace skyquilt::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include "bench/study/priors_parts.h"
 #include "bench/study/study_tables.h"
 #include "core/page/bar_chart.h"
-#include "evaluate/metrics.h"
+#include "evaluate/metrics/metrics.h"
 
 namespace skyquilt::bench {
 namespace {

@@ -14,10 +14,10 @@
 #include "core/image/area_mean.h"
 #include "core/image/srgb.h"
 #include "core/metrics/psnr.h"
-#include "evaluate/choose_photos.h"
-#include "evaluate/load_held_out_photo.h"
-#include "evaluate/metrics.h"
-#include "evaluate/photo_response.h"
+#include "evaluate/metrics/metrics.h"
+#include "evaluate/photos/choose_photos.h"
+#include "evaluate/photos/load_held_out_photo.h"
+#include "evaluate/photos/photo_response.h"
 
 namespace skyquilt::bench {
 namespace {

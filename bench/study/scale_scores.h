@@ -18,9 +18,9 @@
 #include "core/image/pixel_cache.h"
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
-#include "evaluate/apply_response.h"
 #include "evaluate/evaluate_options.h"
-#include "evaluate/photo_scorer.h"
+#include "evaluate/photos/apply_response.h"
+#include "evaluate/photos/photo_scorer.h"
 
 namespace skyquilt::bench {
 

@@ -7,8 +7,8 @@
 #include "core/base/progress.h"
 #include "core/image/normal_image.h"
 #include "core/scene/depth_normals.h"
-#include "evaluate/choose_photos.h"
-#include "evaluate/held_out_scorer.h"
+#include "evaluate/photos/choose_photos.h"
+#include "evaluate/photos/held_out_scorer.h"
 
 namespace skyquilt::bench {
 

@@ -17,7 +17,7 @@
 #include "core/render/trained_field.h"
 #include "core/scene/field_file.h"
 #include "core/scene/scene_file.h"
-#include "evaluate/training_curve.h"
+#include "evaluate/metrics/training_curve.h"
 
 namespace skyquilt::bench {
 namespace {

@@ -2,7 +2,7 @@
 // interrupted bench continues with the next variant; large files of finished variants are removed.
 //   FOLDER/source/                   the survey that all variants use (unless it is given as a project)
 //   FOLDER/runs/<variant>/           project: blocks.geojson, train.json, report/ and the rest
-//   FOLDER/runs/<variant>/covered/   which pixels of held-out photos were scored, and their errors (evaluate/scored_pixels.h)
+//   FOLDER/runs/<variant>/covered/   which pixels of held-out photos were scored, and their errors (evaluate/photos/scored_pixels.h)
 //   FOLDER/runs/<variant>.json       result
 #pragma once
 
@@ -22,7 +22,7 @@
 #include "core/comm/communicator.h"
 #include "core/scene/train_report.h"
 #include "core/survey/survey.h"
-#include "evaluate/metrics.h"
+#include "evaluate/metrics/metrics.h"
 
 namespace skyquilt::bench {
 

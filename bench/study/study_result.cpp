@@ -8,9 +8,9 @@
 
 #include "bench/study/study.h"
 #include "core/base/json_text.h"
-#include "evaluate/buildings_json.h"
-#include "evaluate/class_json.h"
-#include "evaluate/metrics.h"
+#include "evaluate/buildings/buildings_json.h"
+#include "evaluate/metrics/class_json.h"
+#include "evaluate/metrics/metrics.h"
 
 namespace skyquilt::bench {
 namespace {

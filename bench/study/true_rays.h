@@ -12,7 +12,7 @@
 #include "core/raytrace/traced_scene.h"
 #include "core/render/ray.h"
 #include "core/survey/survey.h"
-#include "evaluate/surface_truth.h"
+#include "evaluate/surface/true_surface.h"
 
 namespace skyquilt::bench {
 

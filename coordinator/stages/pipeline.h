@@ -13,7 +13,7 @@
 #include "coordinator/project/settings.h"
 #include "core/comm/communicator.h"
 #include "core/scene/train_report.h"
-#include "evaluate/metrics.h"
+#include "evaluate/metrics/metrics.h"
 #include "tour/export/export_parts.h"
 
 namespace skyquilt::coordinator {

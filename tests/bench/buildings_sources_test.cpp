@@ -12,7 +12,7 @@
 #include "surface/make_surface.h"
 #include "tests/buildings/sample_buildings.h"
 #include "tests/buildings/sample_clouds.h"
-#include "tests/evaluate/surface_sample.h"
+#include "tests/evaluate/surface/surface_sample.h"
 #include "tests/support/nadir_photo.h"
 #include "tests/support/temporary_folder.h"
 

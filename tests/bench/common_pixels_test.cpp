@@ -10,7 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/random.h"
 #include "core/metrics/psnr.h"
-#include "evaluate/scored_pixels.h"
+#include "evaluate/photos/scored_pixels.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::bench {

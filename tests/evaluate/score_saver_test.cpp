@@ -9,7 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/random.h"
-#include "tests/evaluate/nadir_view.h"
+#include "tests/evaluate/photos/nadir_view.h"
 #include "tests/support/not_finite.h"
 #include "tests/support/temporary_folder.h"
 

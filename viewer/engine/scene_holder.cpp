@@ -240,7 +240,7 @@ void SceneHolder::RenderAsPhoto(int photo, std::span<const render::Ray> rays, st
   const survey::Photo& taken = survey->photos[static_cast<size_t>(photo)];
   const std::optional<size_t> index = response.Find(taken.name);
   if (!index) return;
-  // Gain and vignetting, as evaluate/apply_response.cpp.
+  // Gain and vignetting, as evaluate/photos/apply_response.cpp.
   const camera::Camera& camera = survey->cameras.at(static_cast<size_t>(taken.camera));
   const double per_radius2 = 1.0 / (camera.MaxImageRadius() * camera.MaxImageRadius());
   for (size_t i = 0; i < rays.size(); ++i) {

@@ -1,0 +1,170 @@
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "core/page/html.h"
+#include "evaluate/buildings/buildings_report.h"
+#include "evaluate/page/building_numbers.h"
+#include "evaluate/page/page_parts.h"
+
+namespace skyquilt::evaluate {
+namespace {
+
+std::string CountCell(int64_t count) {
+  return page::NumberCell(static_cast<double>(count), page::FormatInteger(count));
+}
+
+std::string PartCell(double share) {
+  return page::NumberCell(share, page::FormatPercent(share));
+}
+
+// "10 to 50 m2" as "10 to 50 m²".
+std::string ShownSize(std::string size) {
+  if (size.ends_with("m2")) size.replace(size.size() - 1, 1, "\xC2\xB2");
+  return size;
+}
+
+std::string DetectionTable(const BuildingTruthScores& truth) {
+  std::string html =
+      "<div class=\"block\"><h3>Found and missed</h3><p class=\"lead\">A building is found when its footprint and that of a true outline share at "
+      "least "
+      "half of what either covers. Completeness is the share of the true that was found, correctness the share of the found that is true, and "
+      "quality "
+      "what is both over what is either; per building, then per area. Outlines below 10 m\xC2\xB2 or not wholly inside the surveyed area count "
+      "neither "
+      "as missed nor as found.</p><div class=\"card scroll\"><table><thead><tr><th>Size</th><th class=\"num\">True outlines</th><th "
+      "class=\"num\">Found"
+      "</th><th class=\"num\">Missed</th><th class=\"num\">Invented</th><th class=\"num\">Completeness</th><th class=\"num\">Correctness</th>"
+      "<th class=\"num\">Quality</th><th class=\"num\">Completeness, area</th><th class=\"num\">Correctness, area</th><th class=\"num\">Quality, area"
+      "</th></tr></thead><tbody>";
+  for (const BuildingDetection& score : truth.detection) {
+    html += "<tr>" + page::TextCell(ShownSize(score.size)) + CountCell(score.outlines) + CountCell(score.matched) + CountCell(score.missed) +
+            CountCell(score.invented) + PartCell(score.completeness) + PartCell(score.correctness) + PartCell(score.quality) +
+            PartCell(score.completeness_area) + PartCell(score.correctness_area) + PartCell(score.quality_area) + "</tr>";
+  }
+  html += "</tbody></table></div>";
+  if (truth.outlines_not_counted + truth.found_not_counted > 0) {
+    html += fmt::format("<p class=\"note\">Not counted: {} true outlines and {} found buildings.</p>",
+                        page::FormatInteger(truth.outlines_not_counted), page::FormatInteger(truth.found_not_counted));
+  }
+  return html + "</div>\n";
+}
+
+const char* UnitOfMeasure(const std::string& measure) {
+  return measure == "yaw" ? kDegree : measure == "footprint" ? "m\xC2\xB2" : "m";
+}
+
+std::string ErrorRow(const BuildingRoofScores& roof, const BuildingErrors& errors) {
+  const auto figure = [&](double value) { return page::NumberCell(value, page::FormatFixed(value, 2, UnitOfMeasure(errors.measure))); };
+  return "<tr>" + page::TextCell(errors.measure) + page::TextCell(roof.roof) + CountCell(errors.n) + figure(errors.bias) + figure(errors.rmse) +
+         figure(errors.nmad) + figure(errors.median_abs) + figure(errors.p90_abs) + PartCell(errors.within_sigma) + "</tr>";
+}
+
+std::string ErrorTable(const BuildingTruthScores& truth) {
+  std::string rows;
+  for (const BuildingRoofScores& roof : truth.roofs) {
+    for (const BuildingErrors& errors : roof.errors) rows += ErrorRow(roof, errors);
+  }
+  if (rows.empty()) return "";
+  return "<div class=\"block\"><h3>Errors of the measures</h3><p class=\"lead\">Found minus true, of all matched buildings and by true kind of roof. "
+         "NMAD "
+         "is 1.4826 times the median distance of the errors from their median: the standard deviation, if errors are normal. The last column should "
+         "be "
+         "95\xE2\x80\xAF%: more means that the stated uncertainties are too large, less that they are too small. An error of the geo-reference "
+         "counts "
+         "too.</p><div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Measure</th><th>Roof</th><th class=\"num\">Buildings</th>"
+         "<th class=\"num\">Mean error</th><th class=\"num\">RMSE</th><th class=\"num\">NMAD</th><th class=\"num\">Median size</th>"
+         "<th class=\"num\">90\xE2\x80\xAF% are below</th><th class=\"num\">Within 1.96 \xCF\x83</th></tr></thead><tbody>" +
+         rows + "</tbody></table></div></div>\n";
+}
+
+std::string RoofNote(const BuildingTruthScores& truth) {
+  std::string html;
+  for (const BuildingRoofScores& roof : truth.roofs) {
+    if (roof.matched == 0) continue;
+    html +=
+        fmt::format("{}{} of {} {}", html.empty() ? "<p class=\"note\">The kind of roof is right for " : "; ", page::FormatPercent(roof.roof_right),
+                    page::FormatInteger(roof.matched), roof.roof == "all" ? "buildings" : page::EscapeHtml(roof.roof) + " roofs");
+  }
+  if (html.empty()) return "";
+  return html + fmt::format(". Of {} corners of true outlines {} have a found corner within 3 m, with an RMSE of {}.</p>\n",
+                            page::FormatInteger(truth.corners), page::FormatPercent(truth.corners_found),
+                            page::FormatFixed(truth.corner_rmse_m, 2, "m"));
+}
+
+std::string ScaleSentence(const BuildingsReport& report) {
+  const buildings::BuildingSet& set = report.compared.set;
+  if (!set.metric) {
+    return " Lengths have no unit, because the scale is unknown: photos with GPS tags, or a length measured on site (buildings.scale_bar), would "
+           "give "
+           "it.";
+  }
+  std::string text = set.scale_source == "scale bar" ? " The scale is that of the given scale bar." : "";
+  if (!report.vertical.empty()) {
+    text += " Heights of ground, eave and ridge have this reference: " + page::EscapeHtml(report.vertical) + ".";
+  }
+  return text;
+}
+
+std::string FileLinks(const BuildingsReport& report) {
+  std::string html;
+  for (const std::string& file : report.files) {
+    html += fmt::format("{0}<a href=\"../buildings/{1}\">{1}</a>", html.empty() ? "<p class=\"note\">Files: " : ", ", page::EscapeHtml(file));
+  }
+  return html.empty() ? html : html + ".</p>\n";
+}
+
+std::string SolidNote(const BuildingScores& scores) {
+  std::string text;
+  if (scores.blocks_instead > 0) {
+    text += fmt::format("{} {} a plain block instead of a solid with a roof. ", page::FormatInteger(scores.blocks_instead),
+                        scores.blocks_instead == 1 ? "building has" : "buildings have");
+  }
+  text += scores.solids_rejected + scores.blocks_rejected == 0
+              ? "All solids are closed and valid."
+              : fmt::format("{} solids with roofs and {} blocks are not valid.", page::FormatInteger(scores.solids_rejected),
+                            page::FormatInteger(scores.blocks_rejected));
+  return "<p class=\"note\">" + text + "</p>\n";
+}
+
+std::string ChipsOf(const BuildingScores& scores, const BuildingUnits& units) {
+  std::string html = Chip(scores.found == 1 ? "building" : "buildings", page::FormatInteger(scores.found), "main") +
+                     Chip("fit well", page::FormatInteger(scores.accepted)) +
+                     Chip("footprints", page::FormatFixed(scores.footprint_m2, 0, units.area)) +
+                     Chip("volume", page::FormatFixed(scores.volume_m3, 0, units.volume));
+  if (scores.truth && !scores.truth->detection.empty()) {
+    html += Chip("completeness", page::FormatPercent(scores.truth->detection.front().completeness)) +
+            Chip("correctness", page::FormatPercent(scores.truth->detection.front().correctness));
+  }
+  return html;
+}
+
+}  // namespace
+
+std::string BuildingScoreTables(const BuildingScores& scores) {
+  return scores.truth ? DetectionTable(*scores.truth) + ErrorTable(*scores.truth) + RoofNote(*scores.truth) : "";
+}
+
+std::string BuildingsSection(const ReportInput& input) {
+  if (input.buildings == nullptr || !input.metrics->buildings) return "";
+  const BuildingsReport& report = *input.buildings;
+  const BuildingScores& scores = *input.metrics->buildings;
+  const buildings::BuildingSet& set = report.compared.set;
+  std::string html = "<section id=\"buildings\"><div class=\"heading\"><h2>Buildings</h2>";
+  if (set.buildings.empty()) {
+    html += "</div><p class=\"card empty\">No buildings were found.</p>\n";
+    return html + (report.compared.truth && !report.compared.truth->outlines.empty() ? BuildingsMap(input) : "") + BuildingScoreTables(scores) +
+           "</section>\n";
+  }
+  html += "<div class=\"chips\">" + ChipsOf(scores, BuildingUnits::Of(set)) + "</div></div>";
+  html +=
+      "<p class=\"lead\">Found in the points of the surface and measured by fitting walls and roofs to them. Length and width are between outer "
+      "walls, "
+      "without the roof's overhang; the direction is that of the length, counter-clockwise from east. The figure after \xC2\xB1 is one standard "
+      "deviation." +
+      ScaleSentence(report) + "</p>";
+  return html + BuildingsMap(input) + "<div class=\"block\">" + BuildingsTable(report) + "</div>" + FileLinks(report) + SolidNote(scores) +
+         BuildingCards(report) + BuildingScoreTables(scores) + "</section>\n";
+}
+
+}  // namespace skyquilt::evaluate

@@ -1,0 +1,109 @@
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "core/page/html.h"
+#include "evaluate/page/page_parts.h"
+#include "evaluate/page/report_page.h"
+
+namespace skyquilt::evaluate {
+
+namespace {
+
+std::string Legend(const ReportInput& input, const std::string& low, const std::string& high) {
+  if (input.color_ramp.empty()) return "";
+  return fmt::format("<span class=\"ramp\">{}<i style=\"background-image:url({})\"></i>{}</span>", low, page::EscapeHtml(input.color_ramp), high);
+}
+
+std::string PhotoCard(const ReportInput& input, size_t index) {
+  const PhotoScore& score = input.metrics->photos[index];
+  const PhotoImages& images = input.images[index];
+  std::string html =
+      fmt::format("<article class=\"card photo\" id=\"photo-{}\" data-order=\"{}\" data-psnr=\"{}\"><header><h3>{}</h3><div class=\"chips\">", index,
+                  index, std::isfinite(score.psnr_db) ? fmt::format("{:.4f}", score.psnr_db) : "", page::EscapeHtml(score.name));
+  html += Chip("PSNR", page::FormatFixed(score.psnr_db, 2, "dB"), "main");
+  html += Chip("SSIM", page::FormatFixed(score.ssim, 3));
+  html += Chip("FLIP", page::FormatFixed(score.flip, 3));
+  html += Chip("coverage", page::FormatPercent(score.Coverage()));
+  html += Chip("full frame", page::FormatFixed(score.psnr_full_db, 2, "dB"));
+  if (input.metrics->has_truth) html += Chip("median depth error", page::FormatFixed(score.depth_median_abs_m, 2, "m"));
+  html += "</div></header><div class=\"pics\">";
+  html += fmt::format(
+      "<figure class=\"pic slider\"><div class=\"compare\" style=\"aspect-ratio:{0}/{1}\"><img src=\"{2}\" loading=\"lazy\" alt=\"Render\"><img "
+      "class=\"top\" src=\"{3}\" loading=\"lazy\" alt=\"Photo\"><i></i><span class=\"tag l\">Photo</span><span class=\"tag r\">Render</span><input "
+      "type=\"range\" min=\"0\" max=\"100\" step=\"0.1\" value=\"50\" aria-label=\"Move between photo and render\"></div><figcaption>Drag to compare "
+      "photo and render</figcaption></figure>",
+      images.width, images.height, page::EscapeHtml(images.render), page::EscapeHtml(images.photo));
+  const auto picture = [&](const char* kind, const std::string& file, const char* caption, const std::string& legend = "") {
+    html += Picture(kind, file, images.width, images.height, caption, legend);
+  };
+  picture("photo-pic", images.photo, "Photo");
+  picture("render-pic", images.render, "Render");
+  picture("error-pic", images.error, "Error", Legend(input, "0", page::FormatFixed(input.error_high, 2)));
+  picture("depth-pic", images.depth, "Depth",
+          Legend(input, page::FormatFixed(images.depth_low_m, 1), page::FormatFixed(images.depth_high_m, 1, "m")));
+  picture("normals-pic", images.normals, "Normals of the render");
+  picture("true-normals-pic", images.true_normals, "True normals");
+  return html + "</div></article>\n";
+}
+
+std::string PhotoTable(const ReportInput& input) {
+  const bool truth = input.metrics->has_truth;
+  std::string html =
+      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Held-out photo</th><th class=\"num\">PSNR</th><th class=\"num\">SSIM</th>"
+      "<th class=\"num\">FLIP</th>"
+      "<th class=\"num\">Coverage</th><th class=\"num\">PSNR, full frame</th><th class=\"num\">SSIM, full frame</th>"
+      "<th class=\"num\">FLIP, full frame</th><th class=\"num\">LPIPS</th>";
+  if (truth) html += "<th class=\"num\">Depth error, RMSE</th><th class=\"num\">Depth error, median</th>";
+  html += "<th class=\"num\">Exposure gain</th><th class=\"num\">Size</th><th class=\"num\">Render time</th></tr></thead><tbody>";
+  for (size_t i = 0; i < input.metrics->photos.size(); ++i) {
+    const PhotoScore& score = input.metrics->photos[i];
+    const bool pictured = i < input.images.size() && !input.images[i].photo.empty();
+    html +=
+        pictured ? fmt::format("<tr><td><a href=\"#photo-{}\">{}</a></td>", i, page::EscapeHtml(score.name)) : "<tr>" + page::TextCell(score.name);
+    html +=
+        page::NumberCell(score.psnr_db, page::FormatFixed(score.psnr_db, 2, "dB")) + page::NumberCell(score.ssim, page::FormatFixed(score.ssim, 3));
+    html += page::NumberCell(score.flip, page::FormatFixed(score.flip, 3));
+    html += page::NumberCell(score.Coverage(), page::FormatPercent(score.Coverage()));
+    html += page::NumberCell(score.psnr_full_db, page::FormatFixed(score.psnr_full_db, 2, "dB")) +
+            page::NumberCell(score.ssim_full, page::FormatFixed(score.ssim_full, 3));
+    html += page::NumberCell(score.flip_full, page::FormatFixed(score.flip_full, 3));
+    html += page::NumberCell(score.lpips, page::FormatFixed(score.lpips, 3));
+    if (truth) {
+      html += page::NumberCell(score.depth_rmse_m, page::FormatFixed(score.depth_rmse_m, 2, "m"));
+      html += page::NumberCell(score.depth_median_abs_m, page::FormatFixed(score.depth_median_abs_m, 2, "m"));
+    }
+    html += page::NumberCell(score.exposure_gain, page::FormatFixed(score.exposure_gain, 3));
+    html += page::NumberCell(score.width, fmt::format("{} \xC3\x97 {}", score.width, score.height));
+    html += page::NumberCell(score.render_seconds, page::FormatFixed(score.render_seconds, 2, "s")) + "</tr>";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
+std::string PhotoSection(const ReportInput& input) {
+  std::string html = "<section id=\"photos\"><div class=\"heading\"><h2>Held-out photos</h2>";
+  if (input.metrics->photos.empty()) return html + "</div><p class=\"card empty\">No photo was scored.</p></section>\n";
+  html +=
+      "<div class=\"controls\"><div class=\"segmented\" role=\"group\" aria-label=\"View\"><button data-view=\"side\" class=\"on\">Side by "
+      "side</button><button data-view=\"slide\">Slider</button></div><label>Order <select id=\"order\"><option value=\"name\">by "
+      "name</option><option value=\"worst\">worst first</option><option value=\"best\">best first</option></select></label></div></div>"
+      "<p class=\"lead\">These photos were kept out of training, so they test the result. Error is the mean absolute difference of red, green and "
+      "blue in display values from 0 to 1. Grey pixels do not count: fewer than two training photos see them, or a mask excludes them. <span "
+      "class=\"screen\">Click a picture to enlarge it.</span></p><div id=\"photo-list\">";
+  size_t pictured = 0;
+  for (size_t i = 0; i < input.metrics->photos.size() && i < input.images.size(); ++i) {
+    if (input.images[i].photo.empty()) continue;
+    html += PhotoCard(input, i);
+    ++pictured;
+  }
+  html += "</div>";
+  if (pictured < input.metrics->photos.size()) {
+    html += fmt::format("<p class=\"note\">Pictures are shown for {} of {} scored photos; the table has all of them.</p>", pictured,
+                        input.metrics->photos.size());
+  }
+  return html + PhotoTable(input) + "</section>\n";
+}
+
+}  // namespace skyquilt::evaluate

@@ -10,6 +10,6 @@ namespace skyquilt::evaluate {
 // Renders every held-out photo and compares it with the real one. The same result for any number of threads, and when it continues after an
 // interruption (EvaluateInput::progress_file).
 // Throws base::UsageError for options out of range, base::InputError for files that cannot be read or written, base::Interrupted.
-Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads);
+metrics::Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads);
 
 }  // namespace skyquilt::evaluate

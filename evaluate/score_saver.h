@@ -29,9 +29,9 @@ class SaveSchedule {
 
 // What grows with every photo. All have the same number of photos whenever it is saved.
 struct ScoreState {
-  Scores* scores = nullptr;
-  SurfacePhotoErrors* surface = nullptr;  // null: no surface is scored
-  WrittenPictures* pictures = nullptr;
+  metrics::Scores* scores = nullptr;
+  surface::SurfacePhotoErrors* surface = nullptr;  // null: no surface is scored
+  page::WrittenPictures* pictures = nullptr;
 };
 
 class ScoreSaver {

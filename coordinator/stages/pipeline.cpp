@@ -57,7 +57,7 @@ void TourStage(Pipeline& pipeline) {
   RunStage(pipeline, "tour");
 }
 
-const evaluate::Metrics& EvaluateStage(Pipeline& pipeline) {
+const evaluate::metrics::Metrics& EvaluateStage(Pipeline& pipeline) {
   RunStage(pipeline, "evaluate");
   return pipeline.metrics;
 }

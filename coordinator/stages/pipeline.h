@@ -32,7 +32,7 @@ struct Pipeline {
   std::function<tour::ExportParts(const Project& project)> tour_parts = {};
   // Results of "train" and "evaluate"; read from their files when the stage had nothing to do.
   scene::TrainReport training = {};
-  evaluate::Metrics metrics = {};
+  evaluate::metrics::Metrics metrics = {};
 };
 
 // Throws base::UsageError when `first` or any later stage has results of another configuration. Called before the first stage, so that a conflict
@@ -65,7 +65,7 @@ struct TourRequest {
 };
 // The same for any folder. Throws base::UsageError when a tour should be proposed and there is one that a person made.
 void ExportProjectTour(Pipeline& pipeline, const TourRequest& request);
-const evaluate::Metrics& EvaluateStage(Pipeline& pipeline);
+const evaluate::metrics::Metrics& EvaluateStage(Pipeline& pipeline);
 
 // Throws base::BlockError with the names of the failed blocks, if there are any.
 void ThrowIfBlocksFailed(const scene::TrainReport& training, const Project& project);

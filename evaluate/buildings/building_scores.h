@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 
 // How much of what is there was found, and how much of what was found is there. Per building, and per square metre of footprint.
 struct BuildingDetection {
@@ -84,4 +84,4 @@ struct BuildingScores {
   std::optional<BuildingTruthScores> truth;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

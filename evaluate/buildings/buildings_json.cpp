@@ -10,7 +10,7 @@
 
 #include "core/survey/geo_fit_json.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
 
 using BuildingsJson = nlohmann::ordered_json;
@@ -205,4 +205,4 @@ BuildingScores BuildingScoresFromJson(const BuildingsJson& json) {
   return scores;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -5,11 +5,11 @@
 
 #include "evaluate/buildings/building_scores.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 
 // NaN and infinity become null.
 nlohmann::ordered_json ToJson(const BuildingScores& scores);
 // Figures that are missing, null or of a wrong type are not measured.
 BuildingScores BuildingScoresFromJson(const nlohmann::ordered_json& json);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

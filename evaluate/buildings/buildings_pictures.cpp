@@ -10,7 +10,7 @@
 #include "core/base/errors.h"
 #include "core/image/image.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
 
 constexpr int kBuildingPictureWidth = 900;  // at most
@@ -34,7 +34,7 @@ image::Image8 PhotoOf(const survey::Survey& survey, const image::PixelCache& pix
   return cached;
 }
 
-image::Image8 Cut(const image::Image8& picture, const buildings::PhotoPart& part) {
+image::Image8 Cut(const image::Image8& picture, const skyquilt::buildings::PhotoPart& part) {
   image::Image8 cut(part.width, part.height, 3);
   for (int y = 0; y < part.height; ++y) {
     std::copy_n(picture.At(part.left, part.top + y), 3 * static_cast<size_t>(part.width), cut.At(0, y));
@@ -43,10 +43,10 @@ image::Image8 Cut(const image::Image8& picture, const buildings::PhotoPart& part
 }
 
 // Empty when the building is not in the picture.
-image::Image8 PictureOfBuilding(const buildings::Building& building, const image::Image8& photo, const camera::Camera& camera,
+image::Image8 PictureOfBuilding(const Building& building, const image::Image8& photo, const camera::Camera& camera,
                                 const geo::Rigid3d& cam_from_enu) {
   const camera::Camera of_photo = camera.Resized(photo.width, photo.height);
-  buildings::PhotoPart part = buildings::PartAround(building, of_photo, cam_from_enu);
+  skyquilt::buildings::PhotoPart part = PartAround(building, of_photo, cam_from_enu);
   part.left = std::clamp(part.left, 0, photo.width);
   part.top = std::clamp(part.top, 0, photo.height);
   part.width = std::min(part.width, photo.width - part.left);
@@ -61,12 +61,12 @@ image::Image8 PictureOfBuilding(const buildings::Building& building, const image
     shown = image::Resize(shown, width, image::ScaledHeight(shown.width, shown.height, width));
     of_part = of_part.Resized(shown.width, shown.height);
   }
-  return buildings::DrawModel(building, shown, of_part, cam_from_enu, {0, 0, shown.width, shown.height});
+  return DrawModel(building, shown, of_part, cam_from_enu, {0, 0, shown.width, shown.height});
 }
 
 }  // namespace
 
-camera::Camera CameraOfPart(const camera::Camera& camera, const buildings::PhotoPart& part, int scale) {
+camera::Camera CameraOfPart(const camera::Camera& camera, const skyquilt::buildings::PhotoPart& part, int scale) {
   camera::Camera of_part = camera;
   of_part.width = part.width;
   of_part.height = part.height;
@@ -76,12 +76,12 @@ camera::Camera CameraOfPart(const camera::Camera& camera, const buildings::Photo
   return of_part.Resized(scale * part.width, scale * part.height);
 }
 
-std::vector<BuildingPicture> WriteBuildingPictures(const buildings::BuildingSet& set, std::span<const size_t> chosen, const survey::Survey& survey,
+std::vector<BuildingPicture> WriteBuildingPictures(const BuildingSet& set, std::span<const size_t> chosen, const survey::Survey& survey,
                                                    const image::PixelCache& pixels, const std::filesystem::path& report_folder) {
   std::vector<BuildingPicture> pictures(set.buildings.size());
   std::map<size_t, std::vector<size_t>> buildings_of_photo;  // so that each photo is read once
   for (const size_t index : chosen) {
-    const std::optional<int> photo = buildings::BestPhoto(set.buildings[index], survey);
+    const std::optional<int> photo = BestPhoto(set.buildings[index], survey);
     if (photo) buildings_of_photo[static_cast<size_t>(*photo)].push_back(index);
   }
   for (const auto& [photo_index, shown] : buildings_of_photo) {
@@ -91,7 +91,7 @@ std::vector<BuildingPicture> WriteBuildingPictures(const buildings::BuildingSet&
     // As many pixels as the smallest building in it needs.
     int width = 0;
     for (const size_t index : shown) {
-      const int part = std::max(buildings::PartAround(set.buildings[index], camera, photo.cam_from_enu).width, 1);
+      const int part = std::max(PartAround(set.buildings[index], camera, photo.cam_from_enu).width, 1);
       width = std::max(width, static_cast<int>(static_cast<int64_t>(camera.width) * std::min(part, kBuildingPictureWidth) / part));
     }
     const image::Image8 pixels_of_photo = PhotoOf(survey, pixels, photo_index, width);
@@ -105,4 +105,4 @@ std::vector<BuildingPicture> WriteBuildingPictures(const buildings::BuildingSet&
   return pictures;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -12,7 +12,10 @@
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
+
+using skyquilt::buildings::Building;
+using skyquilt::buildings::BuildingSet;
 
 struct BuildingPicture {
   std::string file;   // relative to the page; empty: no photo shows the building
@@ -21,11 +24,11 @@ struct BuildingPicture {
 };
 
 // The camera of a part of the picture that is `scale` times enlarged; same lens.
-camera::Camera CameraOfPart(const camera::Camera& camera, const buildings::PhotoPart& part, int scale);
+camera::Camera CameraOfPart(const camera::Camera& camera, const skyquilt::buildings::PhotoPart& part, int scale);
 
 // Writes images/building_<id>.jpg under report_folder for the chosen buildings (indices), one entry per building of the set. Photos are read from
 // their files, which show more than the cache; from the cache where a file is gone. Throws base::InputError when a picture cannot be written.
-std::vector<BuildingPicture> WriteBuildingPictures(const buildings::BuildingSet& set, std::span<const size_t> chosen, const survey::Survey& survey,
+std::vector<BuildingPicture> WriteBuildingPictures(const BuildingSet& set, std::span<const size_t> chosen, const survey::Survey& survey,
                                                    const image::PixelCache& pixels, const std::filesystem::path& report_folder);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -1,4 +1,4 @@
-// What the report shows of the buildings, beside their scores; and the parts of that section. HTML; texts are escaped here.
+// What the report shows of the buildings, beside their scores.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,8 @@
 #include "evaluate/buildings/buildings_pictures.h"
 #include "evaluate/buildings/buildings_scorer.h"
 #include "evaluate/evaluate_input.h"
-#include "evaluate/page/report_page.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 
 inline constexpr size_t kBuildingCards = 60;  // largest buildings that have a card
 
@@ -27,15 +26,6 @@ struct BuildingsReport {
 // Everything but the pictures, which are written later; nothing when no buildings were searched. Throws base::InputError.
 std::optional<BuildingsReport> CollectBuildings(const EvaluateInput& input);
 // Indices of the buildings that have a card, the largest first.
-std::vector<size_t> BuildingsWithCards(const buildings::BuildingSet& set);
+std::vector<size_t> BuildingsWithCards(const BuildingSet& set);
 
-// Footprints coloured by height, north up; outlines that were missed and buildings that were invented are marked when the truth is known.
-std::string BuildingsMap(const ReportInput& input);
-std::string BuildingsTable(const BuildingsReport& report);
-std::string BuildingCards(const BuildingsReport& report);
-// Figures against the truth; empty without.
-std::string BuildingScoreTables(const BuildingScores& scores);
-// The footprint along its axes with the lengths of its walls and the lines of its roof, as SVG.
-std::string BuildingPlan(const buildings::Building& building, const buildings::BuildingSet& set);
-
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -10,22 +10,22 @@
 #include "evaluate/buildings/detection.h"
 #include "evaluate/buildings/measure_errors.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
 
 struct SolidFaults {
   bool solid = false, block = false;
 };
 
-bool IsFaulty(const buildings::Solid& solid) {
-  return solid.Empty() || !buildings::CheckSolid(solid).empty();
+bool IsFaulty(const skyquilt::buildings::Solid& solid) {
+  return solid.Empty() || !CheckSolid(solid).empty();
 }
 
-void AddSolids(const std::vector<buildings::Building>& list, base::ThreadPool& threads, BuildingScores* scores) {
+void AddSolids(const std::vector<Building>& list, base::ThreadPool& threads, BuildingScores* scores) {
   std::vector<SolidFaults> faults(list.size());
   threads.ParallelFor(static_cast<int64_t>(list.size()), [&](int64_t task, int) {
     base::ThrowIfCancelled();
-    const buildings::Building& building = list[static_cast<size_t>(task)];
+    const Building& building = list[static_cast<size_t>(task)];
     faults[static_cast<size_t>(task)] = {IsFaulty(building.lod22), IsFaulty(building.lod12)};
   });
   for (const SolidFaults& one : faults) {
@@ -52,7 +52,7 @@ std::optional<ComparedBuildings> LoadBuildingsOf(const std::filesystem::path& pr
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
   ComparedBuildings compared;
-  compared.set = buildings::LoadBuildings(file);
+  compared.set = skyquilt::buildings::LoadBuildings(file);
   if (survey.truth && survey.georeferenced && std::filesystem::is_regular_file(survey.truth->buildings_json, ignored)) {
     compared.truth = ReadTrueBuildings(survey.truth->buildings_json, survey.origin);
     compared.matches = MatchBuildings(compared.set, *compared.truth);
@@ -65,10 +65,10 @@ BuildingScores ScoreBuildings(const ComparedBuildings& compared, base::ThreadPoo
   scores.found = static_cast<int64_t>(compared.set.buildings.size());
   scores.metric = compared.set.metric;
   scores.gsd_m = compared.set.gsd_m;
-  for (const buildings::Building& building : compared.set.buildings) {
+  for (const Building& building : compared.set.buildings) {
     scores.accepted += building.accepted ? 1 : 0;
     scores.blocks_instead += building.lod22_valid ? 0 : 1;
-    const buildings::Measures& measures = building.measures;
+    const skyquilt::buildings::Measures& measures = building.measures;
     if (std::isfinite(measures.footprint_m2.value)) scores.footprint_m2 += measures.footprint_m2.value;
     if (std::isfinite(measures.volume_m3.value)) scores.volume_m3 += measures.volume_m3.value;
   }
@@ -77,4 +77,4 @@ BuildingScores ScoreBuildings(const ComparedBuildings& compared, base::ThreadPoo
   return scores;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

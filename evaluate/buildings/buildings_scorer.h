@@ -11,11 +11,11 @@
 #include "evaluate/buildings/match_buildings.h"
 #include "evaluate/buildings/true_buildings.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 
 // Found buildings beside the true ones.
 struct ComparedBuildings {
-  buildings::BuildingSet set;
+  BuildingSet set;
   std::optional<TrueBuildings> truth;  // nothing when it is not known
   BuildingMatches matches;             // empty without truth
 };
@@ -26,4 +26,4 @@ std::optional<ComparedBuildings> LoadBuildingsOf(const std::filesystem::path& pr
 // The same for any number of threads.
 BuildingScores ScoreBuildings(const ComparedBuildings& compared, base::ThreadPool& threads);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -5,10 +5,8 @@
 
 #include "evaluate/buildings/shared_areas.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
-
-using buildings::Polygon;
 
 struct SizeClass {
   const char* name;
@@ -50,11 +48,11 @@ std::vector<CountedArea> FoundAreas(const TrueBuildings& truth, const BuildingMa
   for (size_t f = 0; f < footprints.size(); ++f) {
     const std::optional<size_t> pair = matches.pair_of_found[f];
     CountedArea one;
-    one.size_m2 = pair ? truth.outlines[matches.pairs[*pair].truth].area_m2 : buildings::Area(footprints[f]);
+    one.size_m2 = pair ? truth.outlines[matches.pairs[*pair].truth].area_m2 : Area(footprints[f]);
     for (const Polygon& rest : Without(footprints[f], taken)) {
-      const std::vector<Polygon> pieces = truth.area ? buildings::Intersection(rest, *truth.area) : std::vector<Polygon>{rest};
+      const std::vector<Polygon> pieces = truth.area ? Intersection(rest, *truth.area) : std::vector<Polygon>{rest};
       for (const Polygon& piece : pieces) {
-        one.area_m2 += buildings::Area(piece);
+        one.area_m2 += Area(piece);
         one.shared_m2 += CoveredArea(piece, counted);
       }
     }
@@ -64,7 +62,7 @@ std::vector<CountedArea> FoundAreas(const TrueBuildings& truth, const BuildingMa
   return areas;
 }
 
-void CountObjects(const SizeClass& size, const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches,
+void CountObjects(const SizeClass& size, const BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches,
                   BuildingDetection* score) {
   for (size_t t = 0; t < truth.outlines.size(); ++t) {
     if (matches.truth[t] == TrueFate::kNotCounted || !size.Has(truth.outlines[t].area_m2)) continue;
@@ -72,7 +70,7 @@ void CountObjects(const SizeClass& size, const buildings::BuildingSet& found, co
     ++(matches.truth[t] == TrueFate::kMatched ? score->matched : score->missed);
   }
   for (size_t f = 0; f < found.buildings.size(); ++f) {
-    if (matches.found[f] == FoundFate::kInvented && size.Has(buildings::Area(found.buildings[f].footprint))) ++score->invented;
+    if (matches.found[f] == FoundFate::kInvented && size.Has(Area(found.buildings[f].footprint))) ++score->invented;
   }
   const auto matched = static_cast<double>(score->matched), missed = static_cast<double>(score->missed),
              invented = static_cast<double>(score->invented);
@@ -101,9 +99,9 @@ void CompareAreas(const SizeClass& size, const std::vector<CountedArea>& truth, 
 
 }  // namespace
 
-std::vector<BuildingDetection> ScoreDetection(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches) {
+std::vector<BuildingDetection> ScoreDetection(const BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches) {
   std::vector<Polygon> footprints;
-  for (const buildings::Building& building : found.buildings) footprints.push_back(building.footprint);
+  for (const Building& building : found.buildings) footprints.push_back(building.footprint);
   const std::vector<CountedArea> true_areas = TrueAreas(truth, matches, footprints), found_areas = FoundAreas(truth, matches, footprints);
   std::vector<BuildingDetection> scores;
   for (const SizeClass& size : kSizes) {
@@ -115,4 +113,4 @@ std::vector<BuildingDetection> ScoreDetection(const buildings::BuildingSet& foun
   return scores;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -4,7 +4,7 @@
 
 #include "evaluate/buildings/shared_areas.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
 
 bool IsCounted(const TrueBuilding& outline) {
@@ -12,7 +12,7 @@ bool IsCounted(const TrueBuilding& outline) {
 }
 
 // The outline that the footprint overlaps most; nothing when it overlaps none.
-std::optional<size_t> MostOverlapped(const buildings::Polygon& footprint, const std::vector<buildings::Polygon>& outlines) {
+std::optional<size_t> MostOverlapped(const Polygon& footprint, const std::vector<Polygon>& outlines) {
   std::optional<size_t> most;
   double largest_m2 = 0.0;
   for (size_t i = 0; i < outlines.size(); ++i) {
@@ -26,14 +26,14 @@ std::optional<size_t> MostOverlapped(const buildings::Polygon& footprint, const 
 
 }  // namespace
 
-std::vector<BuildingPair> MatchFootprints(std::span<const buildings::Polygon> found, std::span<const buildings::Polygon> truth) {
+std::vector<BuildingPair> MatchFootprints(std::span<const Polygon> found, std::span<const Polygon> truth) {
   std::vector<BuildingPair> candidates;
   for (size_t f = 0; f < found.size(); ++f) {
-    const double found_m2 = buildings::Area(found[f]);
+    const double found_m2 = Area(found[f]);
     for (size_t t = 0; t < truth.size(); ++t) {
       const double shared_m2 = SharedArea(found[f], truth[t]);
       if (!(shared_m2 > 0.0)) continue;
-      const double either_m2 = found_m2 + buildings::Area(truth[t]) - shared_m2;
+      const double either_m2 = found_m2 + Area(truth[t]) - shared_m2;
       if (shared_m2 >= kMatchingOverlap * either_m2) candidates.push_back({f, t, shared_m2 / either_m2});
     }
   }
@@ -48,9 +48,9 @@ std::vector<BuildingPair> MatchFootprints(std::span<const buildings::Polygon> fo
   return pairs;
 }
 
-BuildingMatches MatchBuildings(const buildings::BuildingSet& found, const TrueBuildings& truth) {
-  std::vector<buildings::Polygon> footprints, outlines;
-  for (const buildings::Building& building : found.buildings) footprints.push_back(building.footprint);
+BuildingMatches MatchBuildings(const BuildingSet& found, const TrueBuildings& truth) {
+  std::vector<Polygon> footprints, outlines;
+  for (const Building& building : found.buildings) footprints.push_back(building.footprint);
   for (const TrueBuilding& building : truth.outlines) outlines.push_back(building.walls);
 
   BuildingMatches matches;
@@ -75,11 +75,10 @@ BuildingMatches MatchBuildings(const buildings::BuildingSet& found, const TrueBu
   for (size_t f = 0; f < footprints.size(); ++f) {
     if (paired[f]) continue;
     const std::optional<size_t> most = MostOverlapped(footprints[f], outlines);
-    const bool counted =
-        most ? matches.truth[*most] != TrueFate::kNotCounted : !truth.area || buildings::Contains(*truth.area, buildings::Centroid(footprints[f]));
+    const bool counted = most ? matches.truth[*most] != TrueFate::kNotCounted : !truth.area || Contains(*truth.area, Centroid(footprints[f]));
     if (!counted) matches.found[f] = FoundFate::kNotCounted;
   }
   return matches;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -9,7 +9,7 @@
 #include "buildings/building.h"
 #include "evaluate/buildings/true_buildings.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 
 inline constexpr double kMatchingOverlap = 0.5;      // least intersection over union of the footprints of a pair
 inline constexpr double kSmallestCounted_m2 = 10.0;  // smaller outlines count neither as missed nor as found
@@ -20,7 +20,7 @@ struct BuildingPair {
 };
 
 // One to one, the largest overlap first; equal overlaps in the order of the indices.
-std::vector<BuildingPair> MatchFootprints(std::span<const buildings::Polygon> found, std::span<const buildings::Polygon> truth);
+std::vector<BuildingPair> MatchFootprints(std::span<const Polygon> found, std::span<const Polygon> truth);
 
 // A found building is not counted when it matches, or overlaps most, an outline that is not counted, or when it overlaps none and its middle is
 // outside the surveyed area. Outlines that are not wholly inside that area, or very small, are not counted.
@@ -34,6 +34,6 @@ struct BuildingMatches {
   std::vector<std::optional<size_t>> pair_of_found;  // index into pairs
 };
 
-BuildingMatches MatchBuildings(const buildings::BuildingSet& found, const TrueBuildings& truth);
+BuildingMatches MatchBuildings(const BuildingSet& found, const TrueBuildings& truth);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

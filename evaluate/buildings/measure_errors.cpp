@@ -8,12 +8,8 @@
 
 #include "core/base/order_statistics.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
-
-using buildings::Building;
-using buildings::Measure;
-using buildings::RoofKind;
 
 constexpr double kTwoSided95 = 1.96;   // standard deviations that hold 95 % of normal errors
 constexpr double kNearlySquare = 0.9;  // width over length above which either side may come out longer
@@ -72,7 +68,7 @@ void AddCorners(const std::vector<Eigen::Vector2d>& ring, std::vector<Eigen::Vec
   }
 }
 
-std::vector<Eigen::Vector2d> CornersOf(const buildings::Polygon& polygon) {
+std::vector<Eigen::Vector2d> CornersOf(const Polygon& polygon) {
   std::vector<Eigen::Vector2d> corners;
   AddCorners(polygon.outer, &corners);
   for (const std::vector<Eigen::Vector2d>& hole : polygon.holes) AddCorners(hole, &corners);
@@ -80,10 +76,9 @@ std::vector<Eigen::Vector2d> CornersOf(const buildings::Polygon& polygon) {
 }
 
 // roof: nothing takes all kinds.
-BuildingRoofScores ScoresOfKind(std::optional<RoofKind> roof, const buildings::BuildingSet& found, const TrueBuildings& truth,
-                                const BuildingMatches& matches) {
+BuildingRoofScores ScoresOfKind(std::optional<RoofKind> roof, const BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches) {
   BuildingRoofScores scores;
-  scores.roof = roof ? buildings::NameOf(*roof) : "all";
+  scores.roof = roof ? NameOf(*roof) : "all";
   std::array<std::vector<MeasureError>, kMeasures.size()> errors;
   int64_t right = 0;
   for (const BuildingPair& pair : matches.pairs) {
@@ -138,7 +133,7 @@ BuildingErrors SummariseErrors(const char* measure, std::span<const MeasureError
   return summary;
 }
 
-std::vector<BuildingRoofScores> ScoreMeasures(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches) {
+std::vector<BuildingRoofScores> ScoreMeasures(const BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches) {
   std::vector<BuildingRoofScores> scores = {ScoresOfKind(std::nullopt, found, truth, matches)};
   for (const RoofKind roof : {RoofKind::kFlat, RoofKind::kGable, RoofKind::kHip, RoofKind::kOther}) {
     BuildingRoofScores one = ScoresOfKind(roof, found, truth, matches);
@@ -147,7 +142,7 @@ std::vector<BuildingRoofScores> ScoreMeasures(const buildings::BuildingSet& foun
   return scores;
 }
 
-std::vector<BuildingOutcome> ListOutcomes(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches) {
+std::vector<BuildingOutcome> ListOutcomes(const BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches) {
   std::vector<const BuildingPair*> pair_of_truth(truth.outlines.size());
   for (const BuildingPair& pair : matches.pairs) pair_of_truth[pair.truth] = &pair;
   std::vector<BuildingOutcome> outcomes;
@@ -156,13 +151,13 @@ std::vector<BuildingOutcome> ListOutcomes(const buildings::BuildingSet& found, c
     const TrueBuilding& outline = truth.outlines[t];
     BuildingOutcome& outcome = outcomes.emplace_back();
     outcome.truth_id = outline.id;
-    outcome.roof = buildings::NameOf(outline.roof);
+    outcome.roof = NameOf(outline.roof);
     outcome.area_m2 = outline.area_m2;
     if (pair_of_truth[t] == nullptr) continue;
     const Building& building = found.buildings[pair_of_truth[t]->found];
     outcome.fate = BuildingOutcome::Fate::kMatched;
     outcome.found_id = building.id;
-    outcome.roof_found = buildings::NameOf(building.roof);
+    outcome.roof_found = NameOf(building.roof);
     outcome.overlap = pair_of_truth[t]->overlap;
     for (const ScoredMeasure& measure : kMeasures) {
       const std::optional<MeasureError> error = measure.error(building, outline);
@@ -175,13 +170,13 @@ std::vector<BuildingOutcome> ListOutcomes(const buildings::BuildingSet& found, c
     BuildingOutcome& outcome = outcomes.emplace_back();
     outcome.fate = BuildingOutcome::Fate::kInvented;
     outcome.found_id = building.id;
-    outcome.roof_found = buildings::NameOf(building.roof);
-    outcome.area_m2 = buildings::Area(building.footprint);
+    outcome.roof_found = NameOf(building.roof);
+    outcome.area_m2 = Area(building.footprint);
   }
   return outcomes;
 }
 
-void ScoreCorners(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches, BuildingTruthScores* scores) {
+void ScoreCorners(const BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches, BuildingTruthScores* scores) {
   int64_t n_found = 0;
   double squares = 0.0;
   for (const BuildingPair& pair : matches.pairs) {
@@ -199,4 +194,4 @@ void ScoreCorners(const buildings::BuildingSet& found, const TrueBuildings& trut
   if (n_found > 0) scores->corner_rmse_m = std::sqrt(squares / static_cast<double>(n_found));
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -8,7 +8,7 @@
 #include "evaluate/buildings/building_scores.h"
 #include "evaluate/buildings/match_buildings.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 
 // One measure of one matched building: found minus true, and the uncertainty that was claimed; NaN: not known.
 struct MeasureError {
@@ -22,13 +22,13 @@ BuildingErrors SummariseErrors(const char* measure, std::span<const MeasureError
 double YawError(double found_deg, double true_deg, bool nearly_square);
 
 // All, then by true kind of roof; kinds that no matched building has are left out. Eave and ridge: of pitched roofs, deck: of flat ones.
-std::vector<BuildingRoofScores> ScoreMeasures(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches);
+std::vector<BuildingRoofScores> ScoreMeasures(const BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches);
 
 // One per outline that counts and per invented building, for figures over several surveys.
-std::vector<BuildingOutcome> ListOutcomes(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches);
+std::vector<BuildingOutcome> ListOutcomes(const BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches);
 
 // The corners of true outlines, where walls meet at an angle, against the nearest corner that was found of the same building. Those farther than 3 m
 // from any do not count in the RMSE (as in Rottensteiner et al. 2014, the ISPRS benchmark).
-void ScoreCorners(const buildings::BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches, BuildingTruthScores* scores);
+void ScoreCorners(const BuildingSet& found, const TrueBuildings& truth, const BuildingMatches& matches, BuildingTruthScores* scores);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -2,10 +2,8 @@
 
 #include <Eigen/Geometry>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
-
-using buildings::Polygon;
 
 Eigen::AlignedBox2d BoxOf(const Polygon& polygon) {
   Eigen::AlignedBox2d box;
@@ -29,23 +27,23 @@ std::vector<Polygon> NearTo(const Polygon& place, std::span<const Polygon> polyg
 
 double TotalArea(std::span<const Polygon> disjoint) {
   double sum_m2 = 0.0;
-  for (const Polygon& polygon : disjoint) sum_m2 += buildings::Area(polygon);
+  for (const Polygon& polygon : disjoint) sum_m2 += Area(polygon);
   return sum_m2;
 }
 
 double SharedArea(const Polygon& a, const Polygon& b) {
-  return AreNear(a, b) ? TotalArea(buildings::Intersection(a, b)) : 0.0;
+  return AreNear(a, b) ? TotalArea(Intersection(a, b)) : 0.0;
 }
 
 double CoveredArea(const Polygon& place, std::span<const Polygon> by) {
   double sum_m2 = 0.0;
-  for (const Polygon& piece : buildings::Union(NearTo(place, by))) sum_m2 += SharedArea(place, piece);
+  for (const Polygon& piece : Union(NearTo(place, by))) sum_m2 += SharedArea(place, piece);
   return sum_m2;
 }
 
 std::vector<Polygon> Without(const Polygon& polygon, std::span<const Polygon> taken) {
   const std::vector<Polygon> near = NearTo(polygon, taken);
-  return near.empty() ? std::vector<Polygon>{polygon} : buildings::Difference(polygon, near);
+  return near.empty() ? std::vector<Polygon>{polygon} : Difference(polygon, near);
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -6,14 +6,16 @@
 
 #include "buildings/geometry/polygon.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
+
+using skyquilt::buildings::Polygon;
 
 // Square metres.
-double SharedArea(const buildings::Polygon& a, const buildings::Polygon& b);
-double TotalArea(std::span<const buildings::Polygon> disjoint);
+double SharedArea(const Polygon& a, const Polygon& b);
+double TotalArea(std::span<const Polygon> disjoint);
 // Of the polygons that lie near `place`, what lies within it; overlaps among them count once.
-double CoveredArea(const buildings::Polygon& place, std::span<const buildings::Polygon> by);
+double CoveredArea(const Polygon& place, std::span<const Polygon> by);
 // What is left of the polygon without `taken`.
-std::vector<buildings::Polygon> Without(const buildings::Polygon& polygon, std::span<const buildings::Polygon> taken);
+std::vector<Polygon> Without(const Polygon& polygon, std::span<const Polygon> taken);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

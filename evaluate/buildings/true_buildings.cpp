@@ -12,21 +12,20 @@
 #include "core/geo/transform.h"
 #include "evaluate/surface/true_surface.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
 
-using buildings::Polygon;
 using TruthJson = nlohmann::json;
 
 constexpr const char* kSimulateBuildingsAgain = "Run 'skyquilt simulate' again";
 constexpr double kDegreesToRadians = std::numbers::pi / 180.0;
 constexpr double kNearlyLargest = 0.9;  // share of the area of the largest part
 
-buildings::RoofKind TrueRoof(const std::string& name) {
-  for (const buildings::RoofKind roof : {buildings::RoofKind::kFlat, buildings::RoofKind::kGable, buildings::RoofKind::kHip}) {
-    if (name == buildings::NameOf(roof)) return roof;
+RoofKind TrueRoof(const std::string& name) {
+  for (const RoofKind roof : {RoofKind::kFlat, RoofKind::kGable, RoofKind::kHip}) {
+    if (name == NameOf(roof)) return roof;
   }
-  return buildings::RoofKind::kOther;
+  return RoofKind::kOther;
 }
 
 std::vector<Eigen::Vector2d> RingFrom(const TruthJson& points) {
@@ -89,7 +88,7 @@ void AddOtherEaves(const TruthJson& outline, const TruthJson& rows, TrueBuilding
   for (const TruthJson& part : outline.at("parts")) largest = std::max(largest, area(part));
   for (const TruthJson& part : outline.at("parts")) {
     const TrueBuilding own = CommonOf(rows.at(part.get<size_t>()));
-    const bool pitched = own.roof == buildings::RoofKind::kGable || own.roof == buildings::RoofKind::kHip;
+    const bool pitched = own.roof == RoofKind::kGable || own.roof == RoofKind::kHip;
     if (pitched && area(part) >= kNearlyLargest * largest) building->other_eaves_z_m.push_back(own.eave_z_m);
   }
 }
@@ -99,15 +98,15 @@ TrueBuilding RectangleFrom(const TruthJson& row, const std::optional<Polygon>& a
   TrueBuilding building = CommonOf(row);
   building.shape = "rectangle";
   const double yaw = building.yaw_deg * kDegreesToRadians;
-  const buildings::Rectangle rectangle{{row.at("east_m").get<double>(), row.at("north_m").get<double>()},
-                                       {std::cos(yaw), std::sin(yaw)},
-                                       {0.5 * building.length_m, 0.5 * building.width_m}};
+  const skyquilt::buildings::Rectangle rectangle{{row.at("east_m").get<double>(), row.at("north_m").get<double>()},
+                                                 {std::cos(yaw), std::sin(yaw)},
+                                                 {0.5 * building.length_m, 0.5 * building.width_m}};
   building.walls = rectangle.Outline();
   if (building.width_m > building.length_m) {
     std::swap(building.length_m, building.width_m);
     building.yaw_deg += 90.0;
   }
-  for (const Eigen::Vector2d& corner : building.walls.outer) building.inside &= !area || buildings::Contains(*area, corner);
+  for (const Eigen::Vector2d& corner : building.walls.outer) building.inside &= !area || Contains(*area, corner);
   return building;
 }
 
@@ -121,7 +120,7 @@ void MovePolygon(const geo::Rigid3d& survey_from_truth, double z_m, Polygon* pol
 }
 
 void MoveBuilding(const geo::Rigid3d& survey_from_truth, TrueBuilding* building) {
-  const Eigen::Vector2d middle = buildings::Centroid(building->walls);
+  const Eigen::Vector2d middle = Centroid(building->walls);
   const double rise = (survey_from_truth * Eigen::Vector3d(middle.x(), middle.y(), building->ground_z_m)).z() - building->ground_z_m;
   MovePolygon(survey_from_truth, building->ground_z_m, &building->walls);
   for (double* z : {&building->ground_z_m, &building->eave_z_m, &building->ridge_z_m}) *z += rise;
@@ -157,7 +156,7 @@ bool IsUsable(const TrueBuilding& building) {
 
 TrueBuildings ReadTrueBuildings(const std::filesystem::path& buildings_json, const geo::Geodetic& survey_origin) {
   const std::filesystem::path simulate_json = buildings_json.parent_path().parent_path() / "simulate.json";
-  const geo::Rigid3d survey_from_truth = SurveyFromTruth(simulate_json, survey_origin);
+  const geo::Rigid3d survey_from_truth = surface::SurveyFromTruth(simulate_json, survey_origin);
   TrueBuildings truth;
   try {
     truth.area = SurveyedArea(simulate_json);
@@ -181,10 +180,10 @@ TrueBuildings ReadTrueBuildings(const std::filesystem::path& buildings_json, con
     }
     Orient(&building.walls);
     MoveBuilding(survey_from_truth, &building);
-    building.area_m2 = buildings::Area(building.walls);
+    building.area_m2 = Area(building.walls);
   }
   if (truth.area) MovePolygon(survey_from_truth, 0.0, &*truth.area);
   return truth;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

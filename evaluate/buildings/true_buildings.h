@@ -9,14 +9,21 @@
 #include "buildings/building.h"
 #include "core/geo/geodetic.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
+
+// The truth is described like what was measured.
+using skyquilt::buildings::Building;
+using skyquilt::buildings::BuildingSet;
+using skyquilt::buildings::Measure;
+using skyquilt::buildings::Polygon;
+using skyquilt::buildings::RoofKind;
 
 // What stands together: houses that share a wall are one outline, because photos cannot tell owners apart.
 struct TrueBuilding {
   int id = 0;
-  std::string shape, kind;                                 // "rectangle", "l", ...; "house", ...
-  buildings::RoofKind roof = buildings::RoofKind::kOther;  // of the largest part
-  buildings::Polygon walls;                                // survey ENU, metres, as all that follows
+  std::string shape, kind;           // "rectangle", "l", ...; "house", ...
+  RoofKind roof = RoofKind::kOther;  // of the largest part
+  Polygon walls;                     // survey ENU, metres, as all that follows
   double ground_z_m = 0.0;
   double eave_z_m = 0.0;                // of the largest part
   std::vector<double> other_eaves_z_m;  // of pitched parts hardly smaller than that, any of which may be measured as the largest
@@ -30,11 +37,11 @@ struct TrueBuilding {
 
 struct TrueBuildings {
   std::vector<TrueBuilding> outlines;
-  std::optional<buildings::Polygon> area;  // that was surveyed, ENU; nothing when it is not known
+  std::optional<Polygon> area;  // that was surveyed, ENU; nothing when it is not known
 };
 
 // Reads truth/buildings.json: "outlines", or one rectangle per row of "buildings" in surveys of earlier versions. The frame and the surveyed area are
 // read from simulate.json in the folder above; see SurveyFromTruth. An error of the geo-reference is not corrected. Throws base::InputError.
 TrueBuildings ReadTrueBuildings(const std::filesystem::path& buildings_json, const geo::Geodetic& survey_origin);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -6,7 +6,7 @@
 #include "core/survey/geo_fit_json.h"
 #include "evaluate/control/control_summary.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 
 namespace {
 
@@ -70,4 +70,4 @@ Json ControlJson(const survey::ControlFit& fit) {
   return json;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

@@ -5,10 +5,10 @@
 
 #include "core/survey/control_fit.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 
 // An object: file, crs, heights, placed, adjusted, the groups control, left_out and check (control_summary.h), rejected, unseen, within_rule,
 // statement, and the points. NaN becomes null; null without points.
 nlohmann::ordered_json ControlJson(const survey::ControlFit& fit);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

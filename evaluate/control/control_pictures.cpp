@@ -12,9 +12,9 @@
 #include "core/base/log.h"
 #include "core/image/image.h"
 #include "core/scene/camera_rays.h"
-#include "evaluate/photos/brightness_report.h"
+#include "evaluate/photos/picture_of_colors.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 
 namespace {
 
@@ -39,7 +39,7 @@ image::Image8 Rendered(const scene::Scene& scene, const camera::Camera& camera, 
   scene::CameraRays(camera, cam_from_enu, true).Make(pixels, rays);
   std::vector<render::RayColor> colors(pixels.size());
   scene.RenderRaysOverBackground(rays, colors, scene::Appearance{}, threads);
-  return PictureOf(colors, window.width, window.height);
+  return photos::PictureOf(colors, window.width, window.height);
 }
 
 // The photos with marks, by name, so that each is read once.
@@ -112,4 +112,4 @@ std::vector<MarkPicture> WriteMarkPictures(const survey::Survey& survey, const s
   return pictures;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

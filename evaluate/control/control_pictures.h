@@ -11,7 +11,7 @@
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 
 inline constexpr int kMarkPicture_px = 64;  // width and height of a picture: pixels of the photo at its full size
 
@@ -34,4 +34,4 @@ PictureWindow WindowAround(const Eigen::Vector2d& pixel, int image_width, int im
 std::vector<MarkPicture> WriteMarkPictures(const survey::Survey& survey, const scene::Scene* scene, const std::filesystem::path& report_folder,
                                            base::ThreadPool& threads);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 
 namespace {
 
@@ -157,4 +157,4 @@ std::string AccuracyStatement(const ControlSummary& summary) {
   return text + ".";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

@@ -12,9 +12,9 @@
 #include <string>
 
 #include "core/survey/control_fit.h"
-#include "evaluate/metrics/metrics.h"
+#include "evaluate/measured.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 
 inline constexpr int kLeastCheckPoints = 30;  // for a statement of accuracy by ASPRS
 inline constexpr double kMostHorizontal_gsd = 2.0, kMostVertical_gsd = 3.0;
@@ -56,4 +56,4 @@ ControlSummary SummariseControl(const survey::ControlFit& fit);
 // A sentence or two. From 30 check points on it states RMSE_H and RMSE_V; with fewer it says how many there are.
 std::string AccuracyStatement(const ControlSummary& summary);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

@@ -6,7 +6,7 @@
 
 #include "core/geo/enu_frame.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 
 namespace {
 
@@ -44,4 +44,4 @@ std::map<int, std::vector<size_t>> PhotosByFlight(const survey::Survey& survey) 
   return flights;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

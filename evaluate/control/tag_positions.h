@@ -8,7 +8,7 @@
 
 #include "core/survey/survey.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 
 // ENU metres. The third value is NaN where the tag has no height.
 struct TagPosition {
@@ -23,4 +23,4 @@ std::vector<std::optional<TagPosition>> TagPositions(const survey::Survey& surve
 // The photos of each flight (indices into Survey::photos) in the order of their times; photos without a time first, in name order.
 std::map<int, std::vector<size_t>> PhotosByFlight(const survey::Survey& survey);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

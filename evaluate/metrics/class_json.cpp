@@ -6,7 +6,7 @@
 
 #include "core/survey/geo_fit_json.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 namespace {
 
 constexpr std::array<std::pair<const char*, double ClassScore::*>, 8> kClassErrors = {
@@ -46,4 +46,4 @@ std::vector<ClassScore> ClassScoresFromJson(const nlohmann::ordered_json& classe
   return scores;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -8,7 +8,7 @@
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 namespace {
 
@@ -35,7 +35,7 @@ void SetDepthScores(const std::vector<double>& errors_m, ClassScore* score) {
 
 }  // namespace
 
-void ClassErrors::Add(const HeldOutPhoto& task, const PhotoResult& findings) {
+void ClassErrors::Add(const photos::HeldOutPhoto& task, const photos::PhotoResult& findings) {
   if (findings.true_class.Empty() || findings.true_depth.Empty()) return;
   SKYQUILT_CHECK(findings.true_class.width == findings.scored.width && findings.true_class.height == findings.scored.height,
                  "true classes must have the scored size");
@@ -119,4 +119,4 @@ std::vector<ClassScore> ClassErrors::Result() const {
   return scores;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

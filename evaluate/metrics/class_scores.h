@@ -11,7 +11,7 @@
 #include "evaluate/metrics/metrics.h"
 #include "evaluate/photos/photo_scorer.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 // Errors of depth and normals over several photos. Keeps eight bytes per scored pixel, and four more for each kind of field normals, as medians need
 // all values.
@@ -19,7 +19,7 @@ class ClassErrors {
  public:
   // Adds the pixels of a photo that are scored and have a true depth and a true class. findings: result of ScorePhoto for this task; without true
   // classes nothing is added.
-  void Add(const HeldOutPhoto& task, const PhotoResult& findings);
+  void Add(const photos::HeldOutPhoto& task, const photos::PhotoResult& findings);
   // One entry for each of roof, wall, ground (roads included), road and tree, in this order; figures that no pixel measured are NaN. Empty if no
   // photo had true classes.
   std::vector<ClassScore> Result() const;
@@ -38,4 +38,4 @@ class ClassErrors {
   bool any_ = false;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

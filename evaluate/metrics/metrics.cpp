@@ -1,11 +1,8 @@
 #include "evaluate/metrics/metrics.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "core/base/order_statistics.h"
-
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 const char* const kCoverageDefinition =
     "Coverage: covered pixels divided by the pixels that the photo's mask does not exclude. The surface point of a pixel is where its rendered ray "
@@ -27,29 +24,9 @@ const char* const kRightHalfDefinition =
     "pixels after three gains in linear light, one per colour, were fitted to the left half of the photo. The difference is what tags and training "
     "do not know about the brightness of the photo.";
 
-double PhotoScore::Coverage() const {
-  return used_pixels > 0 ? static_cast<double>(covered_pixels) / static_cast<double>(used_pixels) : kNotMeasured;
-}
-
 const BlockScore* Metrics::FindBlock(const std::string& name) const {
   const auto match = std::find_if(blocks.begin(), blocks.end(), [&](const BlockScore& block) { return block.name == name; });
   return match == blocks.end() ? nullptr : &*match;
 }
 
-double MeanOfMeasured(const std::vector<double>& values) {
-  double sum = 0.0;
-  int n = 0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++n;
-  }
-  return n > 0 ? sum / n : kNotMeasured;
-}
-
-double MedianOfMeasured(std::vector<double> values) {
-  std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  return values.empty() ? kNotMeasured : base::Median(std::move(values));
-}
-
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -4,67 +4,26 @@
 // 1 and LPIPS, a distance, lower better.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
 #include "evaluate/buildings/building_scores.h"
+#include "evaluate/photos/kept_points.h"
+#include "evaluate/photos/photo_score.h"
 #include "evaluate/surface/surface_scores.h"
 
-namespace skyquilt::evaluate {
-
-inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-
-struct PhotoScore {
-  int photo = -1;  // index into Survey::photos
-  std::string name;
-  int width = 0;  // scored size, pixels
-  int height = 0;
-  int64_t used_pixels = 0;                                  // not masked
-  int64_t covered_pixels = 0;                               // used and covered (see kCoverageDefinition)
-  double exposure_gain = 1.0;                               // linear light, from the tags
-  std::array<double, 3> predicted_stops = {0.0, 0.0, 0.0};  // predicted gain, applied in addition, per colour
-  double psnr_db = kNotMeasured;                            // over the covered pixels
-  double psnr_exif_gain_db = kNotMeasured;                  // over the covered pixels, with exposure_gain alone
-  double psnr_normal_db = kNotMeasured;  // at normal brightness against a normally exposed photo (evaluate.normal_photos), covered pixels
-  double ssim_normal = kNotMeasured;
-  double ssim = kNotMeasured;
-  double flip = kNotMeasured;
-  double psnr_full_db = kNotMeasured;  // over all pixels that are not masked
-  double ssim_full = kNotMeasured;
-  double flip_full = kNotMeasured;
-  double lpips = kNotMeasured;                           // full frame
-  double right_half_db = kNotMeasured;                   // PSNR over the covered pixels of the right half,
-  double right_half_fitted_db = kNotMeasured;            // and with gains per colour fitted to the left half
-  std::array<double, 3> fitted_stops = {0.0, 0.0, 0.0};  // those gains, on top of exposure_gain
-  double depth_rmse_m = kNotMeasured;                    // simulated surveys only: z-depth error over covered pixels with both depths
-  double depth_median_abs_m = kNotMeasured;
-  double render_seconds = 0.0;
-
-  double Coverage() const;  // covered share of the used pixels; NaN when none is used
-};
+namespace skyquilt::evaluate::metrics {
 
 struct BlockScore {
   std::string name;
   double psnr_db = kNotMeasured;  // pooled over the covered pixels of all test photos whose surface point is in the block
   int64_t pixels = 0;
-};
-
-// Depth of the scene along rays to sparse points that were kept from training (kept_points.h): rendered distance minus distance of the point,
-// positive behind it. Median, median of the absolute values, and NMAD (1.4826 times the median distance from the median), in metres and in units of
-// the photo's ground sampling distance there.
-struct KeptPointErrors {
-  int64_t points = 0;
-  int64_t rays = 0;  // 0: nothing was measured
-  double median_m = kNotMeasured, median_abs_m = kNotMeasured, nmad_m = kNotMeasured;
-  double median_gsd = kNotMeasured, median_abs_gsd = kNotMeasured, nmad_gsd = kNotMeasured;
-  double share_beyond_10_gsd = kNotMeasured;  // of the rays, those that never become half opaque included
 };
 
 // Errors of one class of surface in a simulated survey, pooled over the scored pixels of all test photos.
@@ -107,7 +66,7 @@ struct Metrics {
   double psnr_right_half_fitted = kNotMeasured;
   double lpips = kNotMeasured;
   std::string lpips_note;  // why lpips is null, or which network measured it
-  std::vector<PhotoScore> photos;
+  std::vector<photos::PhotoScore> photos;
   std::vector<BlockScore> blocks;
   double psnr_interior_db = kNotMeasured;          // covered pixels deeper than the margin inside a block, pooled
   double psnr_seam_db = kNotMeasured;              // covered pixels where two or more blocks blend, pooled
@@ -124,9 +83,9 @@ struct Metrics {
   double flat_roof_rms_m = kNotMeasured;                   // median over them of the rms about the plane that fits best (flat_roofs.h)
   double flat_roof_nmad_m = kNotMeasured;                  // and of the NMAD
   bool has_truth = false;                                  // simulated survey with true depth
-  KeptPointErrors kept_points;
-  std::optional<SurfaceScores> surface;     // nothing when no surface was made
-  std::optional<BuildingScores> buildings;  // nothing when no buildings were searched
+  photos::KeptPointErrors kept_points;
+  std::optional<surface::SurfaceScores> surface;       // nothing when no surface was made
+  std::optional<buildings::BuildingScores> buildings;  // nothing when no buildings were searched
 
   double train_seconds = kNotMeasured;
   double samples_per_second = kNotMeasured;
@@ -163,14 +122,10 @@ extern const char* const kPsnrDefinition;
 extern const char* const kSeamDefinition;
 extern const char* const kRightHalfDefinition;
 
-// Mean of the finite values; NaN when there is none. An infinite value makes the mean infinite.
-double MeanOfMeasured(const std::vector<double>& values);
-// Median of the finite values; NaN when there is none.
-double MedianOfMeasured(std::vector<double> values);
 // Text of metrics.json, keys as in the documentation. UTF-8; invalid bytes in file names are replaced.
 std::string MetricsJson(const Metrics& metrics);
 // Reads metrics.json, except for the statistics of rendering and ground control; of single photos only name and PSNR. An infinite PSNR is read as not
 // measured. Throws base::InputError when the file cannot be read.
 Metrics ReadMetrics(const std::filesystem::path& file);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -15,7 +15,7 @@
 #include "evaluate/metrics/metrics.h"
 #include "evaluate/surface/surface_json.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 namespace {
 
@@ -47,14 +47,14 @@ constexpr std::array<KeyedNumber, 2> kTraining = {{{"train_seconds", &Metrics::t
 constexpr std::array<KeyedNumber, 3> kHeights = {
     {{"median_agl_m", &Metrics::median_agl_m}, {"median_relative_altitude_m", &Metrics::median_relative_altitude_m}, {"gsd_m", &Metrics::gsd_m}}};
 
-constexpr std::array<std::pair<const char*, double KeptPointErrors::*>, 7> kKeptPoints = {
-    {{"median_m", &KeptPointErrors::median_m},
-     {"median_abs_m", &KeptPointErrors::median_abs_m},
-     {"nmad_m", &KeptPointErrors::nmad_m},
-     {"median_gsd", &KeptPointErrors::median_gsd},
-     {"median_abs_gsd", &KeptPointErrors::median_abs_gsd},
-     {"nmad_gsd", &KeptPointErrors::nmad_gsd},
-     {"share_beyond_10_gsd", &KeptPointErrors::share_beyond_10_gsd}}};
+constexpr std::array<std::pair<const char*, double photos::KeptPointErrors::*>, 7> kKeptPoints = {
+    {{"median_m", &photos::KeptPointErrors::median_m},
+     {"median_abs_m", &photos::KeptPointErrors::median_abs_m},
+     {"nmad_m", &photos::KeptPointErrors::nmad_m},
+     {"median_gsd", &photos::KeptPointErrors::median_gsd},
+     {"median_abs_gsd", &photos::KeptPointErrors::median_abs_gsd},
+     {"nmad_gsd", &photos::KeptPointErrors::nmad_gsd},
+     {"share_beyond_10_gsd", &photos::KeptPointErrors::share_beyond_10_gsd}}};
 
 using Json = nlohmann::ordered_json;
 
@@ -79,7 +79,7 @@ Json BytesOrNull(int64_t bytes) {
   return bytes > 0 ? Json(bytes) : Json(nullptr);
 }
 
-Json PhotoJson(const PhotoScore& score, bool has_truth) {
+Json PhotoJson(const photos::PhotoScore& score, bool has_truth) {
   Json json;
   json["name"] = score.name;
   json["width"] = score.width;
@@ -119,7 +119,7 @@ Json GeoFitJson(const Metrics& metrics) {
   return json;
 }
 
-Json KeptPointsJson(const KeptPointErrors& errors) {
+Json KeptPointsJson(const photos::KeptPointErrors& errors) {
   if (errors.rays == 0) return nullptr;
   Json json = {{"points", errors.points}, {"rays", errors.rays}};
   for (const auto& [key, member] : kKeptPoints) json[key] = NumberOrNull(errors.*member);
@@ -162,7 +162,7 @@ void TakeBlocks(const Json& json, Metrics* metrics) {
 }
 
 // Absent in files of earlier versions.
-void TakeKeptPoints(const Json& json, KeptPointErrors* errors) {
+void TakeKeptPoints(const Json& json, photos::KeptPointErrors* errors) {
   const Json kept = ValueAt<Json>(json, "kept_points");
   if (!kept.is_object()) return;
   errors->points = ValueAt<int64_t>(kept, "points");
@@ -200,15 +200,15 @@ Metrics MetricsFrom(const Json& json) {
   }
   metrics.has_truth = json.contains("depth_rmse_m");
   TakeKeptPoints(json, &metrics.kept_points);
-  if (json.contains("surface") && json.at("surface").is_object()) metrics.surface = SurfaceScoresFromJson(json.at("surface"));
-  if (json.contains("buildings") && json.at("buildings").is_object()) metrics.buildings = BuildingScoresFromJson(json.at("buildings"));
+  if (json.contains("surface") && json.at("surface").is_object()) metrics.surface = surface::SurfaceScoresFromJson(json.at("surface"));
+  if (json.contains("buildings") && json.at("buildings").is_object()) metrics.buildings = buildings::BuildingScoresFromJson(json.at("buildings"));
   const Json profile = ValueAt<Json>(json, "floater_profile"), photos = ValueAt<Json>(json, "psnr_per_image");
   for (const Json& place : profile) {
     metrics.floater_profile.emplace_back(NumberAt(place, "clearance_m"), NumberAt(place, "opacity"));
   }
   metrics.lpips_note = ValueAt<std::string>(json, "lpips_note");
   for (const auto& [name, psnr] : photos.items()) {
-    PhotoScore photo;
+    photos::PhotoScore photo;
     photo.name = name;
     if (psnr.is_number()) photo.psnr_db = psnr.get<double>();
     metrics.photos.push_back(std::move(photo));
@@ -247,7 +247,7 @@ std::string MetricsJson(const Metrics& metrics) {
   PutNumbers(kScores, metrics, &json);
   json["lpips_note"] = metrics.lpips_note;
   json["psnr_per_image"] = Json::object();
-  for (const PhotoScore& photo : metrics.photos) json["psnr_per_image"][photo.name] = NumberOrNull(photo.psnr_db);
+  for (const photos::PhotoScore& photo : metrics.photos) json["psnr_per_image"][photo.name] = NumberOrNull(photo.psnr_db);
   json["psnr_per_block"] = Json::object();
   for (const BlockScore& block : metrics.blocks) json["psnr_per_block"][block.name] = NumberOrNull(block.psnr_db);
   PutNumbers(kSeams, metrics, &json);
@@ -285,10 +285,10 @@ std::string MetricsJson(const Metrics& metrics) {
   json["holdout_poses"] = metrics.resected_holdout ? "resected" : "given";
   json["photos_scored"] = metrics.photos.size();
   json["geo"] = GeoFitJson(metrics);
-  if (!metrics.control.points.empty()) json["control"] = ControlJson(metrics.control);
+  if (!metrics.control.points.empty()) json["control"] = control::ControlJson(metrics.control);
   PutNumbers(kHeights, metrics, &json);
   json["images"] = Json::array();
-  for (const PhotoScore& photo : metrics.photos) json["images"].push_back(PhotoJson(photo, metrics.has_truth));
+  for (const photos::PhotoScore& photo : metrics.photos) json["images"].push_back(PhotoJson(photo, metrics.has_truth));
   json["pixels_per_block"] = Json::object();
   for (const BlockScore& block : metrics.blocks) json["pixels_per_block"][block.name] = block.pixels;
   json["definitions"] = {
@@ -312,4 +312,4 @@ Metrics ReadMetrics(const std::filesystem::path& file) {
   }
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

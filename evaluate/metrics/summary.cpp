@@ -5,14 +5,14 @@
 #include "core/base/system.h"
 #include "evaluate/metrics/warnings.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 namespace {
 
-double MeanOver(const std::vector<PhotoScore>& photos, double PhotoScore::*value) {
+double MeanOver(const std::vector<photos::PhotoScore>& photos, double photos::PhotoScore::*value) {
   std::vector<double> values;
   values.reserve(photos.size());
-  for (const PhotoScore& photo : photos) values.push_back(photo.*value);
+  for (const photos::PhotoScore& photo : photos) values.push_back(photo.*value);
   return MeanOfMeasured(values);
 }
 
@@ -31,36 +31,36 @@ void VisitMembers(Score& score, Visit visit) {
 
 void AddMeans(const Scores& scores, Metrics* metrics) {
   metrics->psnr = scores.Psnr();
-  metrics->psnr_normal = MeanOver(scores.photos, &PhotoScore::psnr_normal_db);
-  metrics->ssim_normal = MeanOver(scores.photos, &PhotoScore::ssim_normal);
-  metrics->psnr_exif_gain = MeanOver(scores.photos, &PhotoScore::psnr_exif_gain_db);
-  metrics->ssim = MeanOver(scores.photos, &PhotoScore::ssim);
-  metrics->flip = MeanOver(scores.photos, &PhotoScore::flip);
-  metrics->psnr_full_frame = MeanOver(scores.photos, &PhotoScore::psnr_full_db);
-  metrics->ssim_full_frame = MeanOver(scores.photos, &PhotoScore::ssim_full);
-  metrics->flip_full_frame = MeanOver(scores.photos, &PhotoScore::flip_full);
-  metrics->psnr_right_half = MeanOver(scores.photos, &PhotoScore::right_half_db);
-  metrics->psnr_right_half_fitted = MeanOver(scores.photos, &PhotoScore::right_half_fitted_db);
-  metrics->lpips = MeanOver(scores.photos, &PhotoScore::lpips);
+  metrics->psnr_normal = MeanOver(scores.photos, &photos::PhotoScore::psnr_normal_db);
+  metrics->ssim_normal = MeanOver(scores.photos, &photos::PhotoScore::ssim_normal);
+  metrics->psnr_exif_gain = MeanOver(scores.photos, &photos::PhotoScore::psnr_exif_gain_db);
+  metrics->ssim = MeanOver(scores.photos, &photos::PhotoScore::ssim);
+  metrics->flip = MeanOver(scores.photos, &photos::PhotoScore::flip);
+  metrics->psnr_full_frame = MeanOver(scores.photos, &photos::PhotoScore::psnr_full_db);
+  metrics->ssim_full_frame = MeanOver(scores.photos, &photos::PhotoScore::ssim_full);
+  metrics->flip_full_frame = MeanOver(scores.photos, &photos::PhotoScore::flip_full);
+  metrics->psnr_right_half = MeanOver(scores.photos, &photos::PhotoScore::right_half_db);
+  metrics->psnr_right_half_fitted = MeanOver(scores.photos, &photos::PhotoScore::right_half_fitted_db);
+  metrics->lpips = MeanOver(scores.photos, &photos::PhotoScore::lpips);
   metrics->coverage = scores.Coverage();
 }
 
 void AddPooled(const scene::SceneInfo& info, const Scores& scores, Metrics* metrics) {
   for (size_t b = 0; b < info.blocks.size(); ++b) {
-    metrics->blocks.push_back({info.blocks[b].name, metrics::PsnrOf(scores.per_block[b]), PixelsOf(scores.per_block[b])});
+    metrics->blocks.push_back({info.blocks[b].name, skyquilt::metrics::PsnrOf(scores.per_block[b]), photos::PixelsOf(scores.per_block[b])});
   }
-  metrics->psnr_interior_db = metrics::PsnrOf(scores.seams.AllInterior());
+  metrics->psnr_interior_db = skyquilt::metrics::PsnrOf(scores.seams.AllInterior());
   metrics->psnr_matched_interior_db = scores.seams.MatchedInteriorDb();
-  metrics->psnr_seam_db = metrics::PsnrOf(scores.seams.AllSeam());
+  metrics->psnr_seam_db = skyquilt::metrics::PsnrOf(scores.seams.AllSeam());
   metrics->seam_psnr_gap_db = scores.seams.GapDb();
   metrics->exposure_seam = scores.exposure_seams.border;
   metrics->exposure_seam_control = scores.exposure_seams.control;
   if (!metrics->has_truth) return;
-  const metrics::DepthErrors errors = scores.depth.Result();
+  const skyquilt::metrics::DepthErrors errors = scores.depth.Result();
   metrics->depth_rmse_m = errors.rmse_m;
   metrics->depth_median_abs_m = errors.median_abs_m;
   metrics->classes = scores.classes.Result();
-  const FlatRoofScore roofs = scores.flat_roofs.Result();
+  const photos::FlatRoofScore roofs = scores.flat_roofs.Result();
   metrics->flat_roofs = roofs.roofs;
   metrics->flat_roof_rms_m = roofs.spread.rms_m;
   metrics->flat_roof_nmad_m = roofs.spread.nmad_m;
@@ -88,8 +88,8 @@ void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {
 
 }  // namespace
 
-void Scores::Add(const ScoredPhoto& photo) {
-  const PhotoResult& findings = photo.findings;
+void Scores::Add(const photos::ScoredPhoto& photo) {
+  const photos::PhotoResult& findings = photo.findings;
   photos.push_back(findings.score);
   for (size_t b = 0; b < per_block.size(); ++b) per_block[b] += findings.per_block[b];
   seams += findings.seams;
@@ -101,7 +101,7 @@ void Scores::Add(const ScoredPhoto& photo) {
 
 void Scores::Save(base::BytePacker* out) const {
   out->AddCount(photos.size());
-  for (const PhotoScore& photo : photos) {
+  for (const photos::PhotoScore& photo : photos) {
     VisitMembers(photo, [out](const auto&... member) { (out->Add(member), ...); });
   }
   out->Add(per_block);
@@ -115,7 +115,7 @@ void Scores::Save(base::BytePacker* out) const {
 void Scores::Load(base::ByteUnpacker* in) {
   const size_t n_boxes = per_block.size();
   photos.resize(in->TakeCount(kFewestBytesPerPhoto));
-  for (PhotoScore& photo : photos) {
+  for (photos::PhotoScore& photo : photos) {
     VisitMembers(photo, [in](auto&... member) { (in->Take(&member), ...); });
   }
   in->Take(&per_block);
@@ -128,12 +128,12 @@ void Scores::Load(base::ByteUnpacker* in) {
 }
 
 double Scores::Psnr() const {
-  return MeanOver(photos, &PhotoScore::psnr_db);
+  return MeanOver(photos, &photos::PhotoScore::psnr_db);
 }
 
 double Scores::Coverage() const {
   int64_t used = 0, covered = 0;
-  for (const PhotoScore& photo : photos) {
+  for (const photos::PhotoScore& photo : photos) {
     used += photo.used_pixels;
     covered += photo.covered_pixels;
   }
@@ -171,4 +171,4 @@ void Summarise(const EvaluateInput& input, const Scores& scores, Metrics* metric
   metrics->warnings = CollectWarnings(*input.survey, *input.blocks, input.training, *metrics);
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

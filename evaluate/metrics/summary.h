@@ -15,22 +15,22 @@
 #include "evaluate/photos/held_out_scorer.h"
 #include "evaluate/photos/seam_errors.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 // Scores of all photos, and sums over their pixels for pooled values.
 struct Scores {
-  std::vector<PhotoScore> photos;
-  std::vector<metrics::SquaredError> per_block;
-  SeamErrors seams;
-  metrics::DepthErrorCollector depth;
+  std::vector<photos::PhotoScore> photos;
+  std::vector<skyquilt::metrics::SquaredError> per_block;
+  photos::SeamErrors seams;
+  skyquilt::metrics::DepthErrorCollector depth;
   ClassErrors classes;
-  FlatRoofPoints flat_roofs;
-  FloaterOpacity floaters;
-  ExposureSeams exposure_seams;
+  photos::FlatRoofPoints flat_roofs;
+  photos::FloaterOpacity floaters;
+  photos::ExposureSeams exposure_seams;
 
   // n_boxes: HeldOutScorer::n_boxes().
   explicit Scores(size_t n_boxes) : per_block(n_boxes) {}
-  void Add(const ScoredPhoto& photo);
+  void Add(const photos::ScoredPhoto& photo);
   double Psnr() const;      // dB, mean over the photos; NaN when none has one
   double Coverage() const;  // covered share of all used pixels; NaN when none is used
   // All that Add has added, so that other Scores of the same boxes and roofs can go on from here. Load throws base::UnreadableBytes for another
@@ -44,4 +44,4 @@ Metrics MetricsBeforeScoring(const EvaluateInput& input);
 // Adds the values that follow from the scores, the cost of rendering so far, and the warnings.
 void Summarise(const EvaluateInput& input, const Scores& scores, Metrics* metrics);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -8,7 +8,7 @@
 
 #include "core/base/file.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 namespace {
 
@@ -67,4 +67,4 @@ Curves ReadCurves(const std::filesystem::path& checkpoint_folder, const std::vec
   return curves;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

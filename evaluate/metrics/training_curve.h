@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 struct CurvePoint {
   double step = 0.0;
@@ -22,4 +22,4 @@ Curves ReadCurves(const std::filesystem::path& checkpoint_folder, const std::vec
 // Finds columns by the names in the header: step, seconds, loss, psnr. Skips lines that cannot be parsed, such as an incomplete last line.
 std::vector<CurvePoint> ParseCurve(const std::string& csv);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -9,7 +9,7 @@
 
 #include "partition/altitude.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 namespace {
 
@@ -152,4 +152,4 @@ std::vector<Warning> CollectWarnings(const survey::Survey& survey, const partiti
   return warnings;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -8,10 +8,10 @@
 #include "evaluate/metrics/metrics.h"
 #include "partition/block.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 // Those about the place on Earth first. `training` is null when there is no record of it.
 std::vector<Warning> CollectWarnings(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport* training,
                                      const Metrics& metrics);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -3,37 +3,37 @@
 #include <cmath>
 #include <map>
 
-#include "core/page/html.h"
 #include "evaluate/control/tag_positions.h"
 #include "evaluate/page/drawn_map.h"
+#include "evaluate/page/page_parts.h"
 #include "evaluate/page/report_page.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
 // Bounds of blocks and cameras. GPS tags do not count, because one wrong tag would make the rest of the map tiny.
-MapFrame FrameOf(const ReportInput& input) {
+DrawnMap FrameOf(const ReportInput& input) {
   MapBounds bounds;
   for (const partition::Block& block : input.blocks->blocks) {
     bounds.Include(block.TrainMin().head<2>());
     bounds.Include(block.TrainMax().head<2>());
   }
   for (const survey::Photo& photo : input.survey->photos) bounds.Include(photo.cam_from_enu.OriginInSource().head<2>());
-  return MapFrame(bounds);
+  return DrawnMap(bounds);
 }
 
-std::string Rect(const MapFrame& frame, const Eigen::Vector3d& low, const Eigen::Vector3d& high, const char* css_class) {
+std::string Rect(const DrawnMap& frame, const Eigen::Vector3d& low, const Eigen::Vector3d& high, const char* css_class) {
   return fmt::format("<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", css_class, frame.X(low.x()),
                      frame.Y(high.y()), (high.x() - low.x()) * frame.scale(), (high.y() - low.y()) * frame.scale());
 }
 
 std::string HeldOutPsnr(const ReportInput& input, const partition::Block& block) {
-  const BlockScore* score = input.metrics->FindBlock(block.name);
-  return page::FormatFixed(score == nullptr ? kNotMeasured : score->psnr_db, 2, "dB");
+  const metrics::BlockScore* score = input.metrics->FindBlock(block.name);
+  return FormatFixed(score == nullptr ? kNotMeasured : score->psnr_db, 2, "dB");
 }
 
-std::string Blocks(const ReportInput& input, const MapFrame& frame) {
+std::string Blocks(const ReportInput& input, const DrawnMap& frame) {
   std::string svg = "<g class=\"layer-blocks\">";
   for (const partition::Block& block : input.blocks->blocks) {
     const scene::FieldTraining* log = input.training->Find(block.name);
@@ -43,21 +43,21 @@ std::string Blocks(const ReportInput& input, const MapFrame& frame) {
     svg += "<g>";
     if (!block.empty) svg += Rect(frame, block.TrainMin(), block.TrainMax(), "margin");
     svg += Rect(frame, block.min_enu, block.max_enu, block.empty ? "block empty" : failed ? "block failed" : "block");
-    svg += fmt::format("<title>Block {}: {:.1f} m x {:.1f} m, heights {:.1f} to {:.1f} m, margin {:.1f} m, {}</title></g>",
-                       page::EscapeHtml(block.name), block.max_enu.x() - block.min_enu.x(), block.max_enu.y() - block.min_enu.y(), block.min_enu.z(),
-                       block.max_enu.z(), block.margin_m, value);
+    svg += fmt::format("<title>Block {}: {:.1f} m x {:.1f} m, heights {:.1f} to {:.1f} m, margin {:.1f} m, {}</title></g>", EscapeHtml(block.name),
+                       block.max_enu.x() - block.min_enu.x(), block.max_enu.y() - block.min_enu.y(), block.min_enu.z(), block.max_enu.z(),
+                       block.margin_m, value);
   }
   return svg + "</g>";
 }
 
-std::string BlockLabels(const ReportInput& input, const MapFrame& frame) {
+std::string BlockLabels(const ReportInput& input, const DrawnMap& frame) {
   std::string svg = "<g class=\"layer-blocks\">";
   for (const partition::Block& block : input.blocks->blocks) {
     const double width_px = (block.max_enu.x() - block.min_enu.x()) * frame.scale();
     if (width_px < 28.0) continue;  // the text would overlap its neighbours; the tooltip has the name
     const double x = frame.X(0.5 * (block.min_enu.x() + block.max_enu.x()));
     const double y = frame.Y(0.5 * (block.min_enu.y() + block.max_enu.y()));
-    svg += fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, y - 2.0, page::EscapeHtml(block.name));
+    svg += fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, y - 2.0, EscapeHtml(block.name));
     if (width_px < 70.0) continue;
     svg += fmt::format("<text class=\"value\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, y + 16.0, block.empty ? "empty" : HeldOutPsnr(input, block));
   }
@@ -65,10 +65,10 @@ std::string BlockLabels(const ReportInput& input, const MapFrame& frame) {
 }
 
 // Tagged positions in the order of their times, one line per flight.
-std::string GpsTracks(const ReportInput& input, const MapFrame& frame) {
-  const std::vector<std::optional<TagPosition>> tags = TagPositions(*input.survey);
+std::string GpsTracks(const ReportInput& input, const DrawnMap& frame) {
+  const std::vector<std::optional<control::TagPosition>> tags = control::TagPositions(*input.survey);
   std::string svg = "<g class=\"layer-gps\">";
-  for (const auto& [flight, photos] : PhotosByFlight(*input.survey)) {
+  for (const auto& [flight, photos] : control::PhotosByFlight(*input.survey)) {
     std::string line, marks;
     for (const size_t i : photos) {
       if (!tags[i]) continue;
@@ -83,7 +83,7 @@ std::string GpsTracks(const ReportInput& input, const MapFrame& frame) {
   return svg + "</g>";
 }
 
-std::string Cameras(const ReportInput& input, const MapFrame& frame) {
+std::string Cameras(const ReportInput& input, const DrawnMap& frame) {
   std::map<int, size_t> scored;
   for (size_t i = 0; i < input.metrics->photos.size(); ++i) scored[input.metrics->photos[i].photo] = i;
   const double radius = input.survey->photos.size() > 800 ? 1.8 : input.survey->photos.size() > 200 ? 2.6 : 3.6;
@@ -92,7 +92,7 @@ std::string Cameras(const ReportInput& input, const MapFrame& frame) {
     const survey::Photo& photo = input.survey->photos[i];
     const Eigen::Vector3d center = photo.cam_from_enu.OriginInSource();
     if (!center.allFinite()) continue;
-    std::string title = page::EscapeHtml(photo.name);
+    std::string title = EscapeHtml(photo.name);
     if (std::isfinite(photo.agl_m)) title += fmt::format(", {:.1f} m above ground", photo.agl_m);
     if (!photo.is_test) {
       training += fmt::format("<circle class=\"camera\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"><title>{}</title></circle>", frame.X(center.x()),
@@ -100,10 +100,9 @@ std::string Cameras(const ReportInput& input, const MapFrame& frame) {
       continue;
     }
     const auto score = scored.find(static_cast<int>(i));
-    const std::string mark =
-        fmt::format("<circle class=\"camera test\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"><title>{}, held out{}</title></circle>", frame.X(center.x()),
-                    frame.Y(center.y()), radius + 2.4, title,
-                    score == scored.end() ? "" : ", " + page::FormatFixed(input.metrics->photos[score->second].psnr_db, 2, "dB"));
+    const std::string mark = fmt::format("<circle class=\"camera test\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"><title>{}, held out{}</title></circle>",
+                                         frame.X(center.x()), frame.Y(center.y()), radius + 2.4, title,
+                                         score == scored.end() ? "" : ", " + FormatFixed(input.metrics->photos[score->second].psnr_db, 2, "dB"));
     test += score == scored.end() ? mark : fmt::format("<a href=\"#photo-{}\">{}</a>", score->second, mark);
   }
   return training + "</g>" + test + "</g>";
@@ -112,7 +111,7 @@ std::string Cameras(const ReportInput& input, const MapFrame& frame) {
 }  // namespace
 
 std::string BlockMapSvg(const ReportInput& input) {
-  const MapFrame frame = FrameOf(input);
+  const DrawnMap frame = FrameOf(input);
   std::string svg =
       fmt::format("<svg id=\"map\" class=\"map{}\" viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"Map of blocks and cameras\">",
                   input.background ? " over-image" : "", frame.width_px(), frame.height_px());
@@ -120,7 +119,7 @@ std::string BlockMapSvg(const ReportInput& input) {
     const MapBackground& background = *input.background;
     svg += fmt::format(
         "<image class=\"layer-ortho\" href=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" preserveAspectRatio=\"none\"/>",
-        page::EscapeHtml(background.image), frame.X(background.min_enu.x()), frame.Y(background.max_enu.y()),
+        EscapeHtml(background.image), frame.X(background.min_enu.x()), frame.Y(background.max_enu.y()),
         (background.max_enu.x() - background.min_enu.x()) * frame.scale(), (background.max_enu.y() - background.min_enu.y()) * frame.scale());
   }
   svg += Blocks(input, frame) + GpsTracks(input, frame) + Cameras(input, frame) + BlockLabels(input, frame) +
@@ -128,4 +127,4 @@ std::string BlockMapSvg(const ReportInput& input) {
   return svg + "</svg>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -7,13 +7,12 @@
 
 #include "core/page/curve_chart.h"
 #include "core/page/figure.h"
-#include "core/page/html.h"
 #include "core/page/plot_frame.h"
 #include "evaluate/page/page_parts.h"
 #include "evaluate/page/report_page.h"
 #include "evaluate/page/time_axis.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -29,7 +28,7 @@ constexpr std::array<GainColor, 3> kGainColors = {{{"red", "c5"}, {"green", "c7"
 
 // With a plus before what is above zero.
 std::string SignedFixed(double value, int decimals, std::string_view unit = "") {
-  const std::string text = page::FormatFixed(value, decimals, unit);
+  const std::string text = FormatFixed(value, decimals, unit);
   return value > 0.0 && text.find_first_of("123456789") != std::string::npos ? "+" + text : text;
 }
 
@@ -70,14 +69,14 @@ GainSeries SeriesOf(const BrightnessReport& brightness) {
   return series;
 }
 
-page::PlotFrame GainFrame(const GainSeries& series) {
-  page::PlotFrame frame{.title = "Exposure of the photos, 0 is the reference",
-                        .x = {.label = series.x_label, .low = series.x.front(), .high = series.x.back(), .ticks = 10},
-                        .y = {.label = "exposure (stops)", .low = -0.25, .high = 0.25},
-                        .width_px = kWide_px,
-                        .height_px = 320.0,
-                        .css_class = "wide",
-                        .zero_stands_out = true};
+PlotFrame GainFrame(const GainSeries& series) {
+  PlotFrame frame{.title = "Exposure of the photos, 0 is the reference",
+                  .x = {.label = series.x_label, .low = series.x.front(), .high = series.x.back(), .ticks = 10},
+                  .y = {.label = "exposure (stops)", .low = -0.25, .high = 0.25},
+                  .width_px = kWide_px,
+                  .height_px = 320.0,
+                  .css_class = "wide",
+                  .zero_stands_out = true};
   for (const double x : series.x) frame.x.Include(x);
   for (const double stops : series.exif) frame.y.Include(stops);
   for (const std::vector<double>& learned : series.learned) {
@@ -89,7 +88,7 @@ page::PlotFrame GainFrame(const GainSeries& series) {
 }
 
 // Photos of another flight or camera are not joined. Steps: a value holds until the next photo.
-std::string GainPath(const page::PlotFrame& frame, const GainSeries& series, const std::vector<double>& y, bool steps, const char* css_class,
+std::string GainPath(const PlotFrame& frame, const GainSeries& series, const std::vector<double>& y, bool steps, const char* css_class,
                      const std::string& title) {
   std::string path;
   for (const auto& group : series.groups) {
@@ -102,12 +101,12 @@ std::string GainPath(const page::PlotFrame& frame, const GainSeries& series, con
       }
     }
   }
-  return page::SvgPath(fmt::format("curve {}", css_class), path, title);
+  return SvgPath(fmt::format("curve {}", css_class), path, title);
 }
 
-std::string GainDots(const page::PlotFrame& frame, const GainSeries& series, size_t i, bool learned) {
+std::string GainDots(const PlotFrame& frame, const GainSeries& series, size_t i, bool learned) {
   const BrightnessPhoto& photo = *series.photos[i];
-  std::string html = fmt::format("<g class=\"at\"><title>{}{}\nEXIF {}", page::EscapeHtml(photo.name), photo.held_out ? " (held out)" : "",
+  std::string html = fmt::format("<g class=\"at\"><title>{}{}\nEXIF {}", EscapeHtml(photo.name), photo.held_out ? " (held out)" : "",
                                  SignedFixed(photo.exif_stops, 2, "stops"));
   if (learned) {
     html += fmt::format("\nEXIF and {}: red {}, green {}, blue {}", photo.held_out ? "predicted" : "learned", SignedFixed(series.learned[0][i], 2),
@@ -130,55 +129,55 @@ std::string GainDots(const page::PlotFrame& frame, const GainSeries& series, siz
 std::string GainChart(const BrightnessReport& brightness) {
   const GainSeries series = SeriesOf(brightness);
   if (series.photos.empty()) return "";
-  const page::PlotFrame frame = GainFrame(series);
+  const PlotFrame frame = GainFrame(series);
   const bool learned = Learned(brightness);
-  std::string html = page::PlotBegin(frame) + GainPath(frame, series, series.exif, true, "c6", "EXIF");
-  std::string legend = page::LegendEntry("c6", "EXIF");
+  std::string html = PlotBegin(frame) + GainPath(frame, series, series.exif, true, "c6", "EXIF");
+  std::string legend = LegendEntry("c6", "EXIF");
   for (size_t c = 0; learned && c < 3; ++c) {
     const std::string name = fmt::format("EXIF and learned, {}", kGainColors[c].name);
     html += GainPath(frame, series, series.learned[c], false, kGainColors[c].css_class, name);
-    legend += page::LegendEntry(kGainColors[c].css_class, name);
+    legend += LegendEntry(kGainColors[c].css_class, name);
   }
   for (size_t i = 0; i < series.photos.size(); ++i) html += GainDots(frame, series, i, learned);
-  return html + page::FigureEnd(legend + page::LegendEntry("ring", "held-out photo"));
+  return html + FigureEnd(legend + LegendEntry("ring", "held-out photo"));
 }
 
-std::string BinsPath(const page::PlotFrame& frame, const BrightnessHistogram& shares, const char* css_class, const char* title) {
+std::string BinsPath(const PlotFrame& frame, const BrightnessHistogram& shares, const char* css_class, const char* title) {
   std::string path = fmt::format("M{:.1f} {:.1f}", frame.X(0.0), frame.Y(0.0));
   for (size_t bin = 0; bin < shares.size(); ++bin) {
     path += fmt::format("V{:.1f}H{:.1f}", frame.Y(100.0 * shares[bin]), frame.X(static_cast<double>(bin + 1) / static_cast<double>(shares.size())));
   }
-  return page::SvgPath(css_class, path + fmt::format("V{:.1f}Z", frame.Y(0.0)), title);
+  return SvgPath(css_class, path + fmt::format("V{:.1f}Z", frame.Y(0.0)), title);
 }
 
 std::string HistogramChart(const BrightnessReport& brightness, bool alone) {
   const BrightnessHistogram &before = brightness.histogram_before, &after = brightness.histogram_after;
   const double most = std::max(*std::max_element(before.begin(), before.end()), *std::max_element(after.begin(), after.end()));
   if (!(most > 0.0)) return "";
-  page::PlotFrame frame{.title = "Brightness of the training photos, before and after correction",
-                        .x = {.label = "display value (0 black, 1 white)", .ticks = 10},
-                        .y = {.label = "pixels (%)", .high = 100.0 * most * 1.06},
-                        .zero_stands_out = true};
+  PlotFrame frame{.title = "Brightness of the training photos, before and after correction",
+                  .x = {.label = "display value (0 black, 1 white)", .ticks = 10},
+                  .y = {.label = "pixels (%)", .high = 100.0 * most * 1.06},
+                  .zero_stands_out = true};
   if (alone) {
     frame.width_px = kWide_px;
     frame.height_px = 260.0;
     frame.css_class = "wide";
   }
-  return page::PlotBegin(frame) + BinsPath(frame, after, "bins c0", "at reference exposure") + BinsPath(frame, before, "curve c6", "as recorded") +
-         page::FigureEnd(page::LegendEntry("c6", "as recorded") + page::LegendEntry("c0", "at reference exposure"));
+  return PlotBegin(frame) + BinsPath(frame, after, "bins c0", "at reference exposure") + BinsPath(frame, before, "curve c6", "as recorded") +
+         FigureEnd(LegendEntry("c6", "as recorded") + LegendEntry("c0", "at reference exposure"));
 }
 
 std::string VignettingChart(const BrightnessReport& brightness) {
-  std::vector<page::Curve> curves;
+  std::vector<Curve> curves;
   for (size_t camera = 0; camera < brightness.vignetting.size(); ++camera) {
     const VignettingCurve& shares = brightness.vignetting[camera];
-    page::Curve& curve = curves.emplace_back();
+    Curve& curve = curves.emplace_back();
     curve.name = fmt::format("camera {}", camera + 1);
     for (size_t i = 0; i < shares.size(); ++i) {
       curve.points.emplace_back(static_cast<double>(i) / static_cast<double>(shares.size() - 1), 100.0 * shares[i]);
     }
   }
-  return page::CurveChart(
+  return CurveChart(
       curves, {.title = "Vignetting: light towards the corners", .x_label = "distance from the middle, 1 = farthest corner", .y_label = "light (%)"});
 }
 
@@ -197,7 +196,7 @@ std::string TagSentences(const BrightnessReport& brightness, double low_stops, d
   const char* meaning = "the photos show only this part of the differences in the tags; the rest was changing light that the camera compensated";
   if (brightness.trust_in_tags >= 0.9) meaning = "the photos differ in brightness as their tags say";
   if (brightness.trust_in_tags <= 0.1) meaning = "the camera followed the changing light, so the photos are equally bright whatever their tags say";
-  return text + fmt::format("Trust in the tags is {}: {}. ", page::FormatPercent(brightness.trust_in_tags, 0), meaning);
+  return text + fmt::format("Trust in the tags is {}: {}. ", FormatPercent(brightness.trust_in_tags, 0), meaning);
 }
 
 std::string SpreadSentences(const BrightnessReport& brightness) {
@@ -209,11 +208,11 @@ std::string SpreadSentences(const BrightnessReport& brightness) {
     meaning = "That is more than before: either the camera had evened out bright and dark ground, or the gains are wrong. Check the pictures below.";
   }
   return fmt::format("The mean light of the training photos varies by {} as recorded (standard deviation), and by {} with the gains taken out. {} ",
-                     page::FormatFixed(before, 2, "stops"), page::FormatFixed(after, 2, "stops"), meaning);
+                     FormatFixed(before, 2, "stops"), FormatFixed(after, 2, "stops"), meaning);
 }
 
 std::string ViewCard(const BrightnessView& view) {
-  std::string html = "<article class=\"card photo\"><header><h3>" + page::EscapeHtml(view.name) + "</h3><div class=\"chips\">" +
+  std::string html = "<article class=\"card photo\"><header><h3>" + EscapeHtml(view.name) + "</h3><div class=\"chips\">" +
                      Chip("exposure", SignedFixed(view.stops, 2, "stops")) + "</div></header><div class=\"pics three\">";
   html += Picture("taken-pic", view.photo, view.width, view.height, "Photo as taken");
   html += Picture("recorded-pic", view.recorded, view.width, view.height, "Scene at the exposure of this photo");
@@ -230,13 +229,12 @@ std::string BrightnessSection(const ReportInput& input) {
                                                [](const auto& a, const auto& b) { return a.exif_stops < b.exif_stops; });
   std::string html = "<section id=\"brightness\"><div class=\"heading\"><h2>Brightness</h2><div class=\"chips\">";
   html += Chip("variation between photos",
-               page::FormatFixed(brightness.spread_before_stops, 2) + " \xE2\x86\x92 " + page::FormatFixed(brightness.spread_after_stops, 2, "stops"),
-               "main");
+               FormatFixed(brightness.spread_before_stops, 2) + " \xE2\x86\x92 " + FormatFixed(brightness.spread_after_stops, 2, "stops"), "main");
   if (Learned(brightness) && high->exif_stops - low->exif_stops >= kAlikeStops) {
-    html += Chip("trust in the tags", page::FormatPercent(brightness.trust_in_tags, 0));
+    html += Chip("trust in the tags", FormatPercent(brightness.trust_in_tags, 0));
   }
   html += "</div></div><p class=\"lead\">" + TagSentences(brightness, low->exif_stops, high->exif_stops) + SpreadSentences(brightness) +
-          page::EscapeHtml(brightness.luminance) + "</p><div class=\"chart-grid\">" + GainChart(brightness);
+          EscapeHtml(brightness.luminance) + "</p><div class=\"chart-grid\">" + GainChart(brightness);
   html += HistogramChart(brightness, brightness.vignetting.empty());
   if (!brightness.vignetting.empty()) html += VignettingChart(brightness);
   html += "</div>";
@@ -248,4 +246,4 @@ std::string BrightnessSection(const ReportInput& input) {
   return html + "</section>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/page/html.h"
+#include "evaluate/page/page_parts.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 constexpr const char* kPlusMinus = "\xE2\x80\xAF\xC2\xB1\xE2\x80\xAF";
@@ -21,22 +21,22 @@ int DecimalsOfTwoDigits(double sigma) {
 
 }  // namespace
 
-BuildingUnits BuildingUnits::Of(const buildings::BuildingSet& set) {
+BuildingUnits BuildingUnits::Of(const skyquilt::buildings::BuildingSet& set) {
   return set.metric ? BuildingUnits{} : BuildingUnits{"", "", ""};
 }
 
-std::string ShownMeasure(const buildings::Measure& measure, const char* unit) {
-  if (!std::isfinite(measure.value) || !std::isfinite(measure.sigma) || !(measure.sigma > 0.0)) return page::FormatFixed(measure.value, 2, unit);
+std::string ShownMeasure(const skyquilt::buildings::Measure& measure, const char* unit) {
+  if (!std::isfinite(measure.value) || !std::isfinite(measure.sigma) || !(measure.sigma > 0.0)) return FormatFixed(measure.value, 2, unit);
   const int decimals = std::min(DecimalsOfTwoDigits(measure.sigma), kMostDecimals);
   const double step = decimals < 0 ? std::pow(10.0, -decimals) : 1.0;
   const auto rounded = [step](double x) { return step * std::round(x / step); };
   const bool coarse = decimals < 0;
-  return page::FormatFixed(coarse ? rounded(measure.value) : measure.value, std::max(decimals, 0)) + kPlusMinus +
-         page::FormatFixed(coarse ? rounded(measure.sigma) : measure.sigma, std::max(decimals, 0), unit);
+  return FormatFixed(coarse ? rounded(measure.value) : measure.value, std::max(decimals, 0)) + kPlusMinus +
+         FormatFixed(coarse ? rounded(measure.sigma) : measure.sigma, std::max(decimals, 0), unit);
 }
 
-std::string MeasureCell(const buildings::Measure& measure, const char* unit) {
-  return page::NumberCell(measure.value, ShownMeasure(measure, unit));
+std::string MeasureCell(const skyquilt::buildings::Measure& measure, const char* unit) {
+  return NumberCell(measure.value, ShownMeasure(measure, unit));
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "core/page/html.h"
-#include "evaluate/buildings/buildings_report.h"
 #include "evaluate/page/building_numbers.h"
+#include "evaluate/page/buildings_section.h"
 #include "evaluate/page/drawn_map.h"
+#include "evaluate/page/page_parts.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 constexpr std::array<std::array<double, 3>, 4> kHeightColors = {{{255, 243, 176}, {250, 166, 75}, {214, 52, 58}, {112, 11, 73}}};  // low to high
@@ -37,13 +37,13 @@ class BuildingsMapDrawing {
         units_(BuildingUnits::Of(set_)),
         frame_(BoundsOf(input)),
         carded_(set_.buildings.size()) {
-    for (const buildings::Building& building : set_.buildings) {
+    for (const skyquilt::buildings::Building& building : set_.buildings) {
       const double height = building.measures.height_m.value;
       if (!std::isfinite(height)) continue;
       low_ = std::min(low_, height);
       high_ = std::max(high_, height);
     }
-    for (const size_t index : BuildingsWithCards(set_)) carded_[index] = true;
+    for (const size_t index : buildings::BuildingsWithCards(set_)) carded_[index] = true;
   }
 
   std::string Figure() const {
@@ -51,25 +51,25 @@ class BuildingsMapDrawing {
                "<figure class=\"card map-card\"><svg class=\"map building-map{}\" viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"Map of the "
                "buildings\">",
                input_.background ? " over-image" : "", frame_.width_px(), frame_.height_px()) +
-           Orthophoto() + Outlines(TrueFate::kNotCounted, "uncounted") + Footprints() + Outlines(TrueFate::kMissed, "missed") + Numbers() +
-           ScaleBarAndNorth(frame_, input_.survey->georeferenced) + "</svg>" + Caption() + "</figure>\n";
+           Orthophoto() + Outlines(buildings::TrueFate::kNotCounted, "uncounted") + Footprints() + Outlines(buildings::TrueFate::kMissed, "missed") +
+           Numbers() + ScaleBarAndNorth(frame_, input_.survey->georeferenced) + "</svg>" + Caption() + "</figure>\n";
   }
 
  private:
   static MapBounds BoundsOf(const ReportInput& input) {
     MapBounds bounds;
-    const ComparedBuildings& compared = input.buildings->compared;
-    for (const buildings::Building& building : compared.set.buildings) {
+    const buildings::ComparedBuildings& compared = input.buildings->compared;
+    for (const skyquilt::buildings::Building& building : compared.set.buildings) {
       for (const Eigen::Vector2d& corner : building.footprint.outer) bounds.Include(corner);
     }
     for (size_t t = 0; t < compared.matches.truth.size(); ++t) {
-      if (compared.matches.truth[t] == TrueFate::kNotCounted) continue;
+      if (compared.matches.truth[t] == buildings::TrueFate::kNotCounted) continue;
       for (const Eigen::Vector2d& corner : compared.truth->outlines[t].walls.outer) bounds.Include(corner);
     }
     return bounds;
   }
 
-  std::string PathOf(const buildings::Polygon& polygon) const {
+  std::string PathOf(const skyquilt::buildings::Polygon& polygon) const {
     std::string path;
     const auto add = [&](const std::vector<Eigen::Vector2d>& ring) {
       for (size_t i = 0; i < ring.size(); ++i)
@@ -86,44 +86,44 @@ class BuildingsMapDrawing {
     const MapBackground& background = *input_.background;
     const Eigen::Vector2d size = (background.max_enu - background.min_enu) * frame_.scale();
     return fmt::format("<image href=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" preserveAspectRatio=\"none\"/>",
-                       page::EscapeHtml(background.image), frame_.X(background.min_enu.x()), frame_.Y(background.max_enu.y()), size.x(), size.y());
+                       EscapeHtml(background.image), frame_.X(background.min_enu.x()), frame_.Y(background.max_enu.y()), size.x(), size.y());
   }
 
-  FoundFate FateOf(size_t index) const { return matches_.found.empty() ? FoundFate::kMatched : matches_.found[index]; }
+  buildings::FoundFate FateOf(size_t index) const { return matches_.found.empty() ? buildings::FoundFate::kMatched : matches_.found[index]; }
 
   std::string Title(size_t index) const {
-    const buildings::Building& building = set_.buildings[index];
-    const buildings::Measures& measures = building.measures;
-    std::string title = fmt::format("Building {}, {} roof\nheight {}\nlength {}, width {}", building.id, buildings::NameOf(building.roof),
+    const skyquilt::buildings::Building& building = set_.buildings[index];
+    const skyquilt::buildings::Measures& measures = building.measures;
+    std::string title = fmt::format("Building {}, {} roof\nheight {}\nlength {}, width {}", building.id, NameOf(building.roof),
                                     ShownMeasure(measures.height_m, units_.length), ShownMeasure(measures.length_m, units_.length),
                                     ShownMeasure(measures.width_m, units_.length));
-    if (FateOf(index) == FoundFate::kInvented) title += "\nno such building in the truth";
+    if (FateOf(index) == buildings::FoundFate::kInvented) title += "\nno such building in the truth";
     return title;
   }
 
   std::string Footprints() const {
     std::string svg;
     for (size_t i = 0; i < set_.buildings.size(); ++i) {
-      const buildings::Building& building = set_.buildings[i];
+      const skyquilt::buildings::Building& building = set_.buildings[i];
       const double height = building.measures.height_m.value;
       const std::string color = std::isfinite(height) ? HeightColor((height - low_) / std::max(high_ - low_, 1e-9)) : kUnknownColor;
       svg += fmt::format(
           "<a href=\"#building-{}{}\"><path class=\"footprint{}{}\" fill=\"{}\" fill-rule=\"evenodd\" d=\"{}\"><title>{}</title></path></a>",
-          carded_[i] ? "" : "row-", building.id, building.accepted ? "" : " unsure", FateOf(i) == FoundFate::kInvented ? " invented" : "", color,
-          PathOf(building.footprint), Title(i));
+          carded_[i] ? "" : "row-", building.id, building.accepted ? "" : " unsure", FateOf(i) == buildings::FoundFate::kInvented ? " invented" : "",
+          color, PathOf(building.footprint), Title(i));
     }
     return svg;
   }
 
-  std::string Outlines(TrueFate fate, const char* css_class) const {
+  std::string Outlines(buildings::TrueFate fate, const char* css_class) const {
     std::string svg;
     for (size_t t = 0; t < matches_.truth.size(); ++t) {
       if (matches_.truth[t] != fate) continue;
-      const TrueBuilding& outline = input_.buildings->compared.truth->outlines[t];
-      svg += fmt::format("<path class=\"{}\" d=\"{}\"><title>True outline {}{}, {} roof, {}{}</title></path>", css_class, PathOf(outline.walls),
-                         outline.id, outline.kind.empty() ? "" : ", " + page::EscapeHtml(outline.kind), buildings::NameOf(outline.roof),
-                         page::FormatFixed(outline.area_m2, 0, "m\xC2\xB2"),
-                         fate == TrueFate::kMissed ? ": missed" : ": not counted, because it is small or not wholly inside the surveyed area");
+      const buildings::TrueBuilding& outline = input_.buildings->compared.truth->outlines[t];
+      svg += fmt::format(
+          "<path class=\"{}\" d=\"{}\"><title>True outline {}{}, {} roof, {}{}</title></path>", css_class, PathOf(outline.walls), outline.id,
+          outline.kind.empty() ? "" : ", " + EscapeHtml(outline.kind), NameOf(outline.roof), FormatFixed(outline.area_m2, 0, "m\xC2\xB2"),
+          fate == buildings::TrueFate::kMissed ? ": missed" : ": not counted, because it is small or not wholly inside the surveyed area");
     }
     return svg;
   }
@@ -131,12 +131,12 @@ class BuildingsMapDrawing {
   // Where a footprint is large enough; the others have their tooltip.
   std::string Numbers() const {
     std::string svg;
-    for (const buildings::Building& building : set_.buildings) {
+    for (const skyquilt::buildings::Building& building : set_.buildings) {
       if (building.footprint.outer.empty()) continue;
       MapBounds bounds;
       for (const Eigen::Vector2d& corner : building.footprint.outer) bounds.Include(corner);
       if (bounds.Empty() || (bounds.high - bounds.low).minCoeff() * frame_.scale() < kLabelRoom_px) continue;
-      const Eigen::Vector2d middle = buildings::Centroid(building.footprint);
+      const Eigen::Vector2d middle = Centroid(building.footprint);
       svg += fmt::format("<text class=\"number\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", frame_.X(middle.x()), frame_.Y(middle.y()) + 4.0, building.id);
     }
     return svg;
@@ -149,26 +149,28 @@ class BuildingsMapDrawing {
       for (size_t i = 0; i < kHeightColors.size(); ++i) {
         colors += (i == 0 ? "" : ",") + HeightColor(static_cast<double>(i) / static_cast<double>(kHeightColors.size() - 1));
       }
-      legend += fmt::format("<span class=\"ramp\">height {}<i style=\"background:linear-gradient(90deg,{})\"></i>{}</span>",
-                            page::FormatFixed(low_, 1), colors, page::FormatFixed(high_, 1, units_.length));
+      legend += fmt::format("<span class=\"ramp\">height {}<i style=\"background:linear-gradient(90deg,{})\"></i>{}</span>", FormatFixed(low_, 1),
+                            colors, FormatFixed(high_, 1, units_.length));
     }
     const auto entry = [&](const char* css_class, const char* name) {
       legend += fmt::format("<span><i class=\"{}\"></i>{}</span>", css_class, name);
     };
-    if (std::any_of(set_.buildings.begin(), set_.buildings.end(), [](const buildings::Building& b) { return !b.accepted; })) {
+    if (std::any_of(set_.buildings.begin(), set_.buildings.end(), [](const skyquilt::buildings::Building& b) { return !b.accepted; })) {
       entry("k-unsure", "the model does not fit well");
     }
-    if (std::count(matches_.truth.begin(), matches_.truth.end(), TrueFate::kMissed) > 0) entry("k-missed", "true outline that was missed");
-    if (std::count(matches_.found.begin(), matches_.found.end(), FoundFate::kInvented) > 0) entry("k-invented", "invented: no such building");
-    if (std::count(matches_.truth.begin(), matches_.truth.end(), TrueFate::kNotCounted) > 0) entry("k-uncounted", "true outline that does not count");
+    if (std::count(matches_.truth.begin(), matches_.truth.end(), buildings::TrueFate::kMissed) > 0) entry("k-missed", "true outline that was missed");
+    if (std::count(matches_.found.begin(), matches_.found.end(), buildings::FoundFate::kInvented) > 0)
+      entry("k-invented", "invented: no such building");
+    if (std::count(matches_.truth.begin(), matches_.truth.end(), buildings::TrueFate::kNotCounted) > 0)
+      entry("k-uncounted", "true outline that does not count");
     return "<figcaption><div class=\"legend\">" + legend + "</div></figcaption>";
   }
 
   const ReportInput& input_;
-  const buildings::BuildingSet& set_;
-  const BuildingMatches& matches_;
+  const skyquilt::buildings::BuildingSet& set_;
+  const buildings::BuildingMatches& matches_;
   BuildingUnits units_;
-  MapFrame frame_;
+  DrawnMap frame_;
   std::vector<bool> carded_;
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
 };
@@ -179,4 +181,4 @@ std::string BuildingsMap(const ReportInput& input) {
   return BuildingsMapDrawing(input).Figure();
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

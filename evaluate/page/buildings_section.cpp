@@ -1,21 +1,21 @@
+#include "evaluate/page/buildings_section.h"
+
 #include <fmt/core.h>
 
 #include <cmath>
 
-#include "core/page/html.h"
-#include "evaluate/buildings/buildings_report.h"
 #include "evaluate/page/building_numbers.h"
 #include "evaluate/page/page_parts.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 std::string CountCell(int64_t count) {
-  return page::NumberCell(static_cast<double>(count), page::FormatInteger(count));
+  return NumberCell(static_cast<double>(count), FormatInteger(count));
 }
 
 std::string PartCell(double share) {
-  return page::NumberCell(share, page::FormatPercent(share));
+  return NumberCell(share, FormatPercent(share));
 }
 
 // "10 to 50 m2" as "10 to 50 m²".
@@ -24,7 +24,7 @@ std::string ShownSize(std::string size) {
   return size;
 }
 
-std::string DetectionTable(const BuildingTruthScores& truth) {
+std::string DetectionTable(const buildings::BuildingTruthScores& truth) {
   std::string html =
       "<div class=\"block\"><h3>Found and missed</h3><p class=\"lead\">A building is found when its footprint and that of a true outline share at "
       "least "
@@ -37,15 +37,15 @@ std::string DetectionTable(const BuildingTruthScores& truth) {
       "</th><th class=\"num\">Missed</th><th class=\"num\">Invented</th><th class=\"num\">Completeness</th><th class=\"num\">Correctness</th>"
       "<th class=\"num\">Quality</th><th class=\"num\">Completeness, area</th><th class=\"num\">Correctness, area</th><th class=\"num\">Quality, area"
       "</th></tr></thead><tbody>";
-  for (const BuildingDetection& score : truth.detection) {
-    html += "<tr>" + page::TextCell(ShownSize(score.size)) + CountCell(score.outlines) + CountCell(score.matched) + CountCell(score.missed) +
+  for (const buildings::BuildingDetection& score : truth.detection) {
+    html += "<tr>" + TextCell(ShownSize(score.size)) + CountCell(score.outlines) + CountCell(score.matched) + CountCell(score.missed) +
             CountCell(score.invented) + PartCell(score.completeness) + PartCell(score.correctness) + PartCell(score.quality) +
             PartCell(score.completeness_area) + PartCell(score.correctness_area) + PartCell(score.quality_area) + "</tr>";
   }
   html += "</tbody></table></div>";
   if (truth.outlines_not_counted + truth.found_not_counted > 0) {
-    html += fmt::format("<p class=\"note\">Not counted: {} true outlines and {} found buildings.</p>",
-                        page::FormatInteger(truth.outlines_not_counted), page::FormatInteger(truth.found_not_counted));
+    html += fmt::format("<p class=\"note\">Not counted: {} true outlines and {} found buildings.</p>", FormatInteger(truth.outlines_not_counted),
+                        FormatInteger(truth.found_not_counted));
   }
   return html + "</div>\n";
 }
@@ -54,16 +54,16 @@ const char* UnitOfMeasure(const std::string& measure) {
   return measure == "yaw" ? kDegree : measure == "footprint" ? "m\xC2\xB2" : "m";
 }
 
-std::string ErrorRow(const BuildingRoofScores& roof, const BuildingErrors& errors) {
-  const auto figure = [&](double value) { return page::NumberCell(value, page::FormatFixed(value, 2, UnitOfMeasure(errors.measure))); };
-  return "<tr>" + page::TextCell(errors.measure) + page::TextCell(roof.roof) + CountCell(errors.n) + figure(errors.bias) + figure(errors.rmse) +
+std::string ErrorRow(const buildings::BuildingRoofScores& roof, const buildings::BuildingErrors& errors) {
+  const auto figure = [&](double value) { return NumberCell(value, FormatFixed(value, 2, UnitOfMeasure(errors.measure))); };
+  return "<tr>" + TextCell(errors.measure) + TextCell(roof.roof) + CountCell(errors.n) + figure(errors.bias) + figure(errors.rmse) +
          figure(errors.nmad) + figure(errors.median_abs) + figure(errors.p90_abs) + PartCell(errors.within_sigma) + "</tr>";
 }
 
-std::string ErrorTable(const BuildingTruthScores& truth) {
+std::string ErrorTable(const buildings::BuildingTruthScores& truth) {
   std::string rows;
-  for (const BuildingRoofScores& roof : truth.roofs) {
-    for (const BuildingErrors& errors : roof.errors) rows += ErrorRow(roof, errors);
+  for (const buildings::BuildingRoofScores& roof : truth.roofs) {
+    for (const buildings::BuildingErrors& errors : roof.errors) rows += ErrorRow(roof, errors);
   }
   if (rows.empty()) return "";
   return "<div class=\"block\"><h3>Errors of the measures</h3><p class=\"lead\">Found minus true, of all matched buildings and by true kind of roof. "
@@ -78,22 +78,20 @@ std::string ErrorTable(const BuildingTruthScores& truth) {
          rows + "</tbody></table></div></div>\n";
 }
 
-std::string RoofNote(const BuildingTruthScores& truth) {
+std::string RoofNote(const buildings::BuildingTruthScores& truth) {
   std::string html;
-  for (const BuildingRoofScores& roof : truth.roofs) {
+  for (const buildings::BuildingRoofScores& roof : truth.roofs) {
     if (roof.matched == 0) continue;
-    html +=
-        fmt::format("{}{} of {} {}", html.empty() ? "<p class=\"note\">The kind of roof is right for " : "; ", page::FormatPercent(roof.roof_right),
-                    page::FormatInteger(roof.matched), roof.roof == "all" ? "buildings" : page::EscapeHtml(roof.roof) + " roofs");
+    html += fmt::format("{}{} of {} {}", html.empty() ? "<p class=\"note\">The kind of roof is right for " : "; ", FormatPercent(roof.roof_right),
+                        FormatInteger(roof.matched), roof.roof == "all" ? "buildings" : EscapeHtml(roof.roof) + " roofs");
   }
   if (html.empty()) return "";
   return html + fmt::format(". Of {} corners of true outlines {} have a found corner within 3 m, with an RMSE of {}.</p>\n",
-                            page::FormatInteger(truth.corners), page::FormatPercent(truth.corners_found),
-                            page::FormatFixed(truth.corner_rmse_m, 2, "m"));
+                            FormatInteger(truth.corners), FormatPercent(truth.corners_found), FormatFixed(truth.corner_rmse_m, 2, "m"));
 }
 
-std::string ScaleSentence(const BuildingsReport& report) {
-  const buildings::BuildingSet& set = report.compared.set;
+std::string ScaleSentence(const buildings::BuildingsReport& report) {
+  const skyquilt::buildings::BuildingSet& set = report.compared.set;
   if (!set.metric) {
     return " Lengths have no unit, because the scale is unknown: photos with GPS tags, or a length measured on site (buildings.scale_bar), would "
            "give "
@@ -101,55 +99,54 @@ std::string ScaleSentence(const BuildingsReport& report) {
   }
   std::string text = set.scale_source == "scale bar" ? " The scale is that of the given scale bar." : "";
   if (!report.vertical.empty()) {
-    text += " Heights of ground, eave and ridge have this reference: " + page::EscapeHtml(report.vertical) + ".";
+    text += " Heights of ground, eave and ridge have this reference: " + EscapeHtml(report.vertical) + ".";
   }
   return text;
 }
 
-std::string FileLinks(const BuildingsReport& report) {
+std::string FileLinks(const buildings::BuildingsReport& report) {
   std::string html;
   for (const std::string& file : report.files) {
-    html += fmt::format("{0}<a href=\"../buildings/{1}\">{1}</a>", html.empty() ? "<p class=\"note\">Files: " : ", ", page::EscapeHtml(file));
+    html += fmt::format("{0}<a href=\"../buildings/{1}\">{1}</a>", html.empty() ? "<p class=\"note\">Files: " : ", ", EscapeHtml(file));
   }
   return html.empty() ? html : html + ".</p>\n";
 }
 
-std::string SolidNote(const BuildingScores& scores) {
+std::string SolidNote(const buildings::BuildingScores& scores) {
   std::string text;
   if (scores.blocks_instead > 0) {
-    text += fmt::format("{} {} a plain block instead of a solid with a roof. ", page::FormatInteger(scores.blocks_instead),
+    text += fmt::format("{} {} a plain block instead of a solid with a roof. ", FormatInteger(scores.blocks_instead),
                         scores.blocks_instead == 1 ? "building has" : "buildings have");
   }
   text += scores.solids_rejected + scores.blocks_rejected == 0
               ? "All solids are closed and valid."
-              : fmt::format("{} solids with roofs and {} blocks are not valid.", page::FormatInteger(scores.solids_rejected),
-                            page::FormatInteger(scores.blocks_rejected));
+              : fmt::format("{} solids with roofs and {} blocks are not valid.", FormatInteger(scores.solids_rejected),
+                            FormatInteger(scores.blocks_rejected));
   return "<p class=\"note\">" + text + "</p>\n";
 }
 
-std::string ChipsOf(const BuildingScores& scores, const BuildingUnits& units) {
-  std::string html = Chip(scores.found == 1 ? "building" : "buildings", page::FormatInteger(scores.found), "main") +
-                     Chip("fit well", page::FormatInteger(scores.accepted)) +
-                     Chip("footprints", page::FormatFixed(scores.footprint_m2, 0, units.area)) +
-                     Chip("volume", page::FormatFixed(scores.volume_m3, 0, units.volume));
+std::string ChipsOf(const buildings::BuildingScores& scores, const BuildingUnits& units) {
+  std::string html = Chip(scores.found == 1 ? "building" : "buildings", FormatInteger(scores.found), "main") +
+                     Chip("fit well", FormatInteger(scores.accepted)) + Chip("footprints", FormatFixed(scores.footprint_m2, 0, units.area)) +
+                     Chip("volume", FormatFixed(scores.volume_m3, 0, units.volume));
   if (scores.truth && !scores.truth->detection.empty()) {
-    html += Chip("completeness", page::FormatPercent(scores.truth->detection.front().completeness)) +
-            Chip("correctness", page::FormatPercent(scores.truth->detection.front().correctness));
+    html += Chip("completeness", FormatPercent(scores.truth->detection.front().completeness)) +
+            Chip("correctness", FormatPercent(scores.truth->detection.front().correctness));
   }
   return html;
 }
 
 }  // namespace
 
-std::string BuildingScoreTables(const BuildingScores& scores) {
+std::string BuildingScoreTables(const buildings::BuildingScores& scores) {
   return scores.truth ? DetectionTable(*scores.truth) + ErrorTable(*scores.truth) + RoofNote(*scores.truth) : "";
 }
 
 std::string BuildingsSection(const ReportInput& input) {
   if (input.buildings == nullptr || !input.metrics->buildings) return "";
-  const BuildingsReport& report = *input.buildings;
-  const BuildingScores& scores = *input.metrics->buildings;
-  const buildings::BuildingSet& set = report.compared.set;
+  const buildings::BuildingsReport& report = *input.buildings;
+  const buildings::BuildingScores& scores = *input.metrics->buildings;
+  const skyquilt::buildings::BuildingSet& set = report.compared.set;
   std::string html = "<section id=\"buildings\"><div class=\"heading\"><h2>Buildings</h2>";
   if (set.buildings.empty()) {
     html += "</div><p class=\"card empty\">No buildings were found.</p>\n";
@@ -167,4 +164,4 @@ std::string BuildingsSection(const ReportInput& input) {
          BuildingCards(report) + BuildingScoreTables(scores) + "</section>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

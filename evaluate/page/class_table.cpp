@@ -2,11 +2,10 @@
 
 #include <cmath>
 
-#include "core/page/html.h"
 #include "evaluate/page/page_parts.h"
 #include "evaluate/page/report_page.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -14,18 +13,18 @@ struct FieldNormals {
   bool density = false, head = false;  // measured
 };
 
-std::string ScoreRow(const ClassScore& score, const FieldNormals& measured) {
-  const auto metres = [](double value) { return page::NumberCell(value, page::FormatFixed(value, 3, "m")); };
-  const auto degrees = [](double value) { return page::NumberCell(value, page::FormatFixed(value, 1, kDegree)); };
-  return "<tr>" + page::TextCell(score.name) + page::NumberCell(static_cast<double>(score.pixels), page::FormatInteger(score.pixels)) +
-         metres(score.depth_bias_m) + metres(score.depth_median_abs_m) + metres(score.depth_nmad_m) + metres(score.depth_rmse_m) +
-         degrees(score.normal_median_deg) + degrees(score.normal_mean_deg) + (measured.density ? degrees(score.density_normal_median_deg) : "") +
+std::string ScoreRow(const metrics::ClassScore& score, const FieldNormals& measured) {
+  const auto metres = [](double value) { return NumberCell(value, FormatFixed(value, 3, "m")); };
+  const auto degrees = [](double value) { return NumberCell(value, FormatFixed(value, 1, kDegree)); };
+  return "<tr>" + TextCell(score.name) + NumberCell(static_cast<double>(score.pixels), FormatInteger(score.pixels)) + metres(score.depth_bias_m) +
+         metres(score.depth_median_abs_m) + metres(score.depth_nmad_m) + metres(score.depth_rmse_m) + degrees(score.normal_median_deg) +
+         degrees(score.normal_mean_deg) + (measured.density ? degrees(score.density_normal_median_deg) : "") +
          (measured.head ? degrees(score.head_normal_median_deg) : "") + "</tr>";
 }
 
 }  // namespace
 
-std::string ClassTable(const Metrics& metrics) {
+std::string ClassTable(const metrics::Metrics& metrics) {
   if (metrics.classes.empty()) return "";
   std::string html =
       "<div class=\"block\"><h3>Surface by class</h3><p class=\"lead\">How well roofs, walls, ground and trees of the simulated survey came out, "
@@ -38,23 +37,23 @@ std::string ClassTable(const Metrics& metrics) {
       "<th class=\"num\">Median error</th><th class=\"num\">NMAD</th><th class=\"num\">RMSE</th><th class=\"num\">Normal error, median</th>"
       "<th class=\"num\">Normal error, mean</th>";
   FieldNormals measured;
-  for (const ClassScore& score : metrics.classes) {
+  for (const metrics::ClassScore& score : metrics.classes) {
     measured.density |= std::isfinite(score.density_normal_median_deg);
     measured.head |= std::isfinite(score.head_normal_median_deg);
   }
   if (measured.density) html += "<th class=\"num\">Of the density's normals, median</th>";
   if (measured.head) html += "<th class=\"num\">Of the predicted normals, median</th>";
   html += "</tr></thead><tbody>";
-  for (const ClassScore& score : metrics.classes) html += ScoreRow(score, measured);
+  for (const metrics::ClassScore& score : metrics.classes) html += ScoreRow(score, measured);
   html += "</tbody></table></div>";
   if (metrics.flat_roofs > 0) {
     html += fmt::format(
         "<p class=\"note\">{} flat {} {} about the plane that fits best (rms{}) and {} without the pixels that are far off (NMAD), without the rim, "
         "machines and stair housings.</p>",
-        metrics.flat_roofs, metrics.flat_roofs == 1 ? "roof is rough by" : "roofs are rough by", page::FormatFixed(metrics.flat_roof_rms_m, 3, "m"),
-        metrics.flat_roofs == 1 ? "" : ", median over the roofs", page::FormatFixed(metrics.flat_roof_nmad_m, 3, "m"));
+        metrics.flat_roofs, metrics.flat_roofs == 1 ? "roof is rough by" : "roofs are rough by", FormatFixed(metrics.flat_roof_rms_m, 3, "m"),
+        metrics.flat_roofs == 1 ? "" : ", median over the roofs", FormatFixed(metrics.flat_roof_nmad_m, 3, "m"));
   }
   return html + "</div>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

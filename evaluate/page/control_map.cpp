@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "core/page/figure.h"
-#include "core/page/html.h"
 #include "evaluate/control/control_summary.h"
 #include "evaluate/control/tag_positions.h"
 #include "evaluate/page/control_section.h"
 #include "evaluate/page/drawn_map.h"
+#include "evaluate/page/page_parts.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -25,16 +25,16 @@ bool SetsTheScale(const survey::ControlPointFit& point) {
   return HasError(point) && point.use != survey::ControlUse::kRejected;
 }
 
-MapFrame FrameOf(const survey::Survey& survey) {
+DrawnMap FrameOf(const survey::Survey& survey) {
   MapBounds bounds;
   for (const survey::ControlPointFit& point : survey.control.points) bounds.Include(point.given_in_enu.head<2>());
   for (const survey::Photo& photo : survey.photos) bounds.Include(photo.cam_from_enu.OriginInSource().head<2>());
   bounds.MakeRoom();
-  return MapFrame(bounds);
+  return DrawnMap(bounds);
 }
 
 // How many times too long errors are drawn: 1, 2 or 5 times a power of ten, so that the largest one nearly is kLongestArrow_px.
-double Exaggeration(const survey::ControlFit& fit, const MapFrame& frame) {
+double Exaggeration(const survey::ControlFit& fit, const DrawnMap& frame) {
   double largest_m = 0.0;
   for (const survey::ControlPointFit& point : fit.points) {
     if (!SetsTheScale(point)) continue;
@@ -62,9 +62,9 @@ const char* ClassOf(survey::ControlUse use) {
   return "";
 }
 
-std::string Tracks(const survey::Survey& survey, const MapFrame& frame) {
+std::string Tracks(const survey::Survey& survey, const DrawnMap& frame) {
   std::string svg;
-  for (const auto& [flight, photos] : PhotosByFlight(survey)) {
+  for (const auto& [flight, photos] : control::PhotosByFlight(survey)) {
     std::string points;
     for (const size_t i : photos) {
       const Eigen::Vector3d centre = survey.photos[i].cam_from_enu.OriginInSource();
@@ -75,13 +75,13 @@ std::string Tracks(const survey::Survey& survey, const MapFrame& frame) {
   return svg;
 }
 
-std::string Mark(const survey::ControlPointFit& point, const MapFrame& frame, double exaggeration) {
+std::string Mark(const survey::ControlPointFit& point, const DrawnMap& frame, double exaggeration) {
   const Eigen::Vector2d at(frame.X(point.given_in_enu.x()), frame.Y(point.given_in_enu.y()));
-  std::string title = page::EscapeHtml(point.label) + ", " + survey::NameOf(point.use);
+  std::string title = EscapeHtml(point.label) + ", " + survey::NameOf(point.use);
   std::string svg;
   if (HasError(point)) {
-    title += fmt::format("\nerror east {}, north {}, up {}", page::FormatFixed(point.error_m.x(), 3), page::FormatFixed(point.error_m.y(), 3),
-                         page::FormatFixed(point.error_m.z(), 3, "m"));
+    title += fmt::format("\nerror east {}, north {}, up {}", FormatFixed(point.error_m.x(), 3), FormatFixed(point.error_m.y(), 3),
+                         FormatFixed(point.error_m.z(), 3, "m"));
     // Longer ones are cut, and dashed.
     const Eigen::Vector2d wanted = exaggeration * frame.scale() * Eigen::Vector2d(point.error_m.x(), -point.error_m.y());
     const double share = std::min(1.0, 1.2 * kLongestArrow_px / std::max(wanted.norm(), 1e-9));
@@ -95,7 +95,7 @@ std::string Mark(const survey::ControlPointFit& point, const MapFrame& frame, do
   }
   return fmt::format(
       "<g class=\"point {}\"><title>{}</title>{}<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text></g>",
-      ClassOf(point.use), title, svg, at.x(), at.y(), at.x(), at.y() - 8.0, page::EscapeHtml(point.label));
+      ClassOf(point.use), title, svg, at.x(), at.y(), at.x(), at.y() - 8.0, EscapeHtml(point.label));
 }
 
 }  // namespace
@@ -103,7 +103,7 @@ std::string Mark(const survey::ControlPointFit& point, const MapFrame& frame, do
 std::string ControlMap(const survey::Survey& survey) {
   const survey::ControlFit& fit = survey.control;
   if (!std::any_of(fit.points.begin(), fit.points.end(), HasError)) return "";
-  const MapFrame frame = FrameOf(survey);
+  const DrawnMap frame = FrameOf(survey);
   const double exaggeration = Exaggeration(fit, frame);
   std::string svg = fmt::format(
       "<figure class=\"card map-card\"><svg class=\"map geo-map control-map\" viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"Map of control "
@@ -117,7 +117,7 @@ std::string ControlMap(const survey::Survey& survey) {
   std::string legend;
   const auto entry = [&](survey::ControlUse use, const char* name) {
     const bool any = std::any_of(fit.points.begin(), fit.points.end(), [&](const survey::ControlPointFit& point) { return point.use == use; });
-    if (any) legend += page::LegendEntry(ClassOf(use), name);
+    if (any) legend += LegendEntry(ClassOf(use), name);
   };
   entry(survey::ControlUse::kControl, "control points");
   entry(survey::ControlUse::kCheck, "check points");
@@ -130,4 +130,4 @@ std::string ControlMap(const survey::Survey& survey) {
   return svg + "<figcaption><div class=\"legend\">" + legend + "</div><p class=\"note\">" + note + ".</p></figcaption></figure>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

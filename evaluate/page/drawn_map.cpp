@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -31,7 +31,7 @@ void MapBounds::MakeRoom() {
   Include(middle + room);
 }
 
-MapFrame::MapFrame(const MapBounds& bounds) {
+DrawnMap::DrawnMap(const MapBounds& bounds) {
   Eigen::Vector2d low(-1.0, -1.0), high(1.0, 1.0);
   if (!bounds.Empty()) {
     low = bounds.low;
@@ -48,7 +48,7 @@ MapFrame::MapFrame(const MapBounds& bounds) {
   north_ = high.y();
 }
 
-std::string ScaleBarAndNorth(const MapFrame& frame, bool georeferenced) {
+std::string ScaleBarAndNorth(const DrawnMap& frame, bool georeferenced) {
   // The largest length 1, 2 or 5 times a power of ten that fits into a quarter of the map.
   const double room_m = 0.25 * frame.width_px() / frame.scale();
   const double magnitude = std::pow(10.0, std::floor(std::log10(room_m)));
@@ -77,4 +77,4 @@ std::string ArrowPath(const Eigen::Vector2d& start_px, const Eigen::Vector2d& en
   return path + fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}", left.x(), left.y(), end_px.x(), end_px.y(), right.x(), right.y());
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -1,11 +1,11 @@
-// The frame of the report's maps: converts east and north to pixels of the drawing, north up.
+// A map of the report as it is drawn: converts east and north to pixels of the drawing, north up.
 #pragma once
 
 #include <Eigen/Core>
 #include <limits>
 #include <string>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 // Bounds of what a map shows: east and north in metres.
 struct MapBounds {
@@ -18,10 +18,10 @@ struct MapBounds {
   bool Empty() const { return !(high.array() >= low.array()).all(); }
 };
 
-class MapFrame {
+class DrawnMap {
  public:
   // With some room around the bounds; 2 m by 2 m about the origin when they are empty.
-  explicit MapFrame(const MapBounds& bounds);
+  explicit DrawnMap(const MapBounds& bounds);
 
   double X(double east_m) const { return (east_m - west_) * scale_; }
   double Y(double north_m) const { return (north_ - north_m) * scale_; }
@@ -34,9 +34,9 @@ class MapFrame {
 };
 
 // SVG. Without a geo-reference the bar is in units of unknown length, and no direction is north.
-std::string ScaleBarAndNorth(const MapFrame& frame, bool georeferenced);
+std::string ScaleBarAndNorth(const DrawnMap& frame, bool georeferenced);
 
 // Path data in SVG syntax: a line, with an arrow head at its end unless it is very short.
 std::string ArrowPath(const Eigen::Vector2d& start_px, const Eigen::Vector2d& end_px);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -8,13 +8,14 @@
 #include "core/page/curve_chart.h"
 #include "evaluate/control/tag_positions.h"
 #include "evaluate/page/geo_section.h"
+#include "evaluate/page/page_parts.h"
 #include "evaluate/page/time_axis.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
-using Tags = std::vector<std::optional<TagPosition>>;
+using Tags = std::vector<std::optional<control::TagPosition>>;
 using Range = std::pair<double, double>;
 
 constexpr const char* kBeyond = "Points beyond the chart are drawn on its edge.";
@@ -43,8 +44,8 @@ struct Shown {
   bool Empty() const { return !(high >= low); }
 };
 
-bool AnyBeyond(const std::vector<page::Curve>& curves, const Range& range) {
-  return std::any_of(curves.begin(), curves.end(), [&](const page::Curve& curve) {
+bool AnyBeyond(const std::vector<Curve>& curves, const Range& range) {
+  return std::any_of(curves.begin(), curves.end(), [&](const Curve& curve) {
     return std::any_of(curve.points.begin(), curve.points.end(), [&](const auto& p) { return p.second < range.first || p.second > range.second; });
   });
 }
@@ -52,7 +53,7 @@ bool AnyBeyond(const std::vector<page::Curve>& curves, const Range& range) {
 std::string ResidualChart(const survey::Survey& survey, const Tags& tags, const TimeAxis& axis) {
   constexpr std::array<const char*, 3> kNames = {"east", "north", "up"};
   constexpr std::array<int, 3> kColors = {1, 2, 7};
-  std::vector<page::Curve> curves(4);
+  std::vector<Curve> curves(4);
   for (size_t k = 0; k < 3; ++k) curves[k] = {.name = kNames[k], .dots = true, .color = kColors[k]};
   curves[3] = {.name = "tag not used", .dots = true, .hollow = true, .color = 6};
   Shown used, all;
@@ -68,16 +69,16 @@ std::string ResidualChart(const survey::Survey& survey, const Tags& tags, const 
   used = used.Empty() ? all : used;
   used.Include(0.0);
   const Range range = used.Padded();
-  return page::CurveChart(curves, {.title = "Residuals: fitted position minus corrected tag",
-                                   .x_label = axis.label,
-                                   .y_label = "residual (m)",
-                                   .y_range = range,
-                                   .zero_stands_out = true,
-                                   .note = AnyBeyond(curves, range) ? kBeyond : ""});
+  return CurveChart(curves, {.title = "Residuals: fitted position minus corrected tag",
+                             .x_label = axis.label,
+                             .y_label = "residual (m)",
+                             .y_range = range,
+                             .zero_stands_out = true,
+                             .note = AnyBeyond(curves, range) ? kBeyond : ""});
 }
 
 std::string HeightChart(const survey::Survey& survey, const Tags& tags, const TimeAxis& axis) {
-  page::Curve recorded{.name = "tags as recorded", .dots = true, .color = 6}, corrected{.name = "corrected tags", .dots = true, .color = 2},
+  Curve recorded{.name = "tags as recorded", .dots = true, .color = 6}, corrected{.name = "corrected tags", .dots = true, .color = 2},
       unused{.name = "tag not used, as recorded", .dots = true, .hollow = true, .color = 6};
   bool any_correction = false;
   Shown shown;
@@ -93,11 +94,11 @@ std::string HeightChart(const survey::Survey& survey, const Tags& tags, const Ti
     shown.Include(tags[i]->corrected.z());
     any_correction = any_correction || survey.photos[i].gps_correction_m.z() != 0.0;
   }
-  std::vector<page::Curve> curves = {std::move(unused), std::move(recorded)};
+  std::vector<Curve> curves = {std::move(unused), std::move(recorded)};
   if (any_correction) curves.push_back(std::move(corrected));
   bool first = true;
-  for (const auto& [flight, photos] : PhotosByFlight(survey)) {
-    page::Curve cameras{.name = "fitted cameras", .color = 0, .in_legend = std::exchange(first, false)};
+  for (const auto& [flight, photos] : control::PhotosByFlight(survey)) {
+    Curve cameras{.name = "fitted cameras", .color = 0, .in_legend = std::exchange(first, false)};
     for (const size_t i : photos) {
       const double up_m = survey.photos[i].cam_from_enu.OriginInSource().z();
       cameras.points.emplace_back(axis.x[i], up_m);
@@ -106,20 +107,20 @@ std::string HeightChart(const survey::Survey& survey, const Tags& tags, const Ti
     curves.push_back(std::move(cameras));
   }
   const Range range = shown.Padded();
-  return page::CurveChart(curves, {.title = "Heights of tags and cameras",
-                                   .x_label = axis.label,
-                                   .y_label = "height above the origin (m)",
-                                   .y_range = range,
-                                   .note = AnyBeyond(curves, range) ? kBeyond : ""});
+  return CurveChart(curves, {.title = "Heights of tags and cameras",
+                             .x_label = axis.label,
+                             .y_label = "height above the origin (m)",
+                             .y_range = range,
+                             .note = AnyBeyond(curves, range) ? kBeyond : ""});
 }
 
 }  // namespace
 
 std::string GeoCharts(const survey::Survey& survey) {
-  const Tags tags = TagPositions(survey);
+  const Tags tags = control::TagPositions(survey);
   if (std::none_of(tags.begin(), tags.end(), [](const auto& tag) { return tag.has_value(); })) return "";
   const TimeAxis axis = AxisOf(survey);
   return "<div class=\"chart-grid\">" + ResidualChart(survey, tags, axis) + HeightChart(survey, tags, axis) + "</div>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

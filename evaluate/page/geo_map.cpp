@@ -5,24 +5,24 @@
 #include <cmath>
 
 #include "core/page/figure.h"
-#include "core/page/html.h"
 #include "evaluate/control/tag_positions.h"
-#include "evaluate/metrics/metrics.h"
+#include "evaluate/measured.h"
 #include "evaluate/page/drawn_map.h"
 #include "evaluate/page/geo_section.h"
+#include "evaluate/page/page_parts.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
-using Tags = std::vector<std::optional<TagPosition>>;
+using Tags = std::vector<std::optional<control::TagPosition>>;
 
 constexpr double kMaxArrowShare = 0.15;  // of the map's longer side, for exaggerated arrows
 constexpr std::array<double, 6> kExaggerations = {2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
 
 // Bounds of cameras and of the tags that are used, which are drawn `exaggeration` times too far from them: one wrong tag would make the rest of the
 // map tiny.
-MapFrame FrameOf(const survey::Survey& survey, const Tags& tags, double exaggeration) {
+DrawnMap FrameOf(const survey::Survey& survey, const Tags& tags, double exaggeration) {
   MapBounds bounds;
   for (size_t i = 0; i < tags.size(); ++i) {
     const Eigen::Vector3d center = survey.photos[i].cam_from_enu.OriginInSource();
@@ -30,12 +30,12 @@ MapFrame FrameOf(const survey::Survey& survey, const Tags& tags, double exaggera
     if (tags[i] && survey.photos[i].gps_inlier) bounds.Include((center + exaggeration * (tags[i]->recorded - center)).head<2>());
   }
   bounds.MakeRoom();
-  return MapFrame(bounds);
+  return DrawnMap(bounds);
 }
 
 // How many times too far from their photos the tags are drawn, so that the arrows can be seen but do not cover their neighbours.
 double Exaggeration(const survey::Survey& survey, const Tags& tags) {
-  const MapFrame frame = FrameOf(survey, tags, 1.0);
+  const DrawnMap frame = FrameOf(survey, tags, 1.0);
   std::vector<double> lengths_px;
   for (size_t i = 0; i < tags.size(); ++i) {
     if (!tags[i] || !survey.photos[i].gps_inlier) continue;
@@ -56,7 +56,7 @@ double Exaggeration(const survey::Survey& survey, const Tags& tags) {
 }
 
 // Share of the way from a point inside the map to `end_px` that stays inside.
-double ShareInside(const MapFrame& frame, const Eigen::Vector2d& start_px, const Eigen::Vector2d& end_px) {
+double ShareInside(const DrawnMap& frame, const Eigen::Vector2d& start_px, const Eigen::Vector2d& end_px) {
   const Eigen::Vector2d size(frame.width_px(), frame.height_px());
   double share = 1.0;
   for (int axis = 0; axis < 2; ++axis) {
@@ -70,7 +70,10 @@ double ShareInside(const MapFrame& frame, const Eigen::Vector2d& start_px, const
 class GeoMapDrawing {
  public:
   explicit GeoMapDrawing(const survey::Survey& survey)
-      : survey_(survey), tags_(TagPositions(survey)), exaggeration_(Exaggeration(survey, tags_)), frame_(FrameOf(survey, tags_, exaggeration_)) {
+      : survey_(survey),
+        tags_(control::TagPositions(survey)),
+        exaggeration_(Exaggeration(survey, tags_)),
+        frame_(FrameOf(survey, tags_, exaggeration_)) {
     const size_t n = survey.photos.size();
     radius_px_ = n > 800 ? 1.4 : n > 200 ? 2.0 : 2.8;
   }
@@ -106,7 +109,7 @@ class GeoMapDrawing {
 
   std::string Tracks() const {
     std::string svg;
-    for (const auto& [flight, photos] : PhotosByFlight(survey_)) {
+    for (const auto& [flight, photos] : control::PhotosByFlight(survey_)) {
       std::vector<Eigen::Vector2d> cameras_px, tags_px;
       for (const size_t i : photos) {
         cameras_px.push_back(CameraPixel(i));
@@ -122,12 +125,12 @@ class GeoMapDrawing {
   std::string Title(size_t i) const {
     const survey::Photo& photo = survey_.photos[i];
     const Eigen::Vector3d& residual = tags_[i]->residual;
-    std::string title = fmt::format("{}, flight {}{}\nresidual east {}, north {}, up {}", page::EscapeHtml(photo.name), photo.flight + 1,
-                                    photo.gps_inlier ? "" : ", tag not used", page::FormatFixed(residual.x(), 2), page::FormatFixed(residual.y(), 2),
-                                    page::FormatFixed(residual.z(), 2, "m"));
+    std::string title = fmt::format("{}, flight {}{}\nresidual east {}, north {}, up {}", EscapeHtml(photo.name), photo.flight + 1,
+                                    photo.gps_inlier ? "" : ", tag not used", FormatFixed(residual.x(), 2), FormatFixed(residual.y(), 2),
+                                    FormatFixed(residual.z(), 2, "m"));
     if (survey_.fit.tag_lag_s == 0.0) return title;
-    return title + fmt::format("\nmoved by {} for a lag of {}", page::FormatFixed(photo.gps_correction_m.head<2>().norm(), 1, "m"),
-                               page::FormatFixed(survey_.fit.tag_lag_s, 2, "s"));
+    return title + fmt::format("\nmoved by {} for a lag of {}", FormatFixed(photo.gps_correction_m.head<2>().norm(), 1, "m"),
+                               FormatFixed(survey_.fit.tag_lag_s, 2, "s"));
   }
 
   std::string Arrows(bool used) const {
@@ -150,7 +153,7 @@ class GeoMapDrawing {
       if (tags_[i]) continue;
       const Eigen::Vector2d x_px = CameraPixel(i);
       svg += fmt::format("<circle class=\"untagged\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"><title>{}, no GPS tag</title></circle>", x_px.x(), x_px.y(),
-                         radius_px_, page::EscapeHtml(survey_.photos[i].name));
+                         radius_px_, EscapeHtml(survey_.photos[i].name));
     }
     return svg;
   }
@@ -163,10 +166,10 @@ class GeoMapDrawing {
   }
 
   std::string Caption() const {
-    std::string legend = page::LegendEntry("c1", "fitted camera positions") + page::LegendEntry("dashes", "GPS tags as recorded");
-    if (AnyPhoto(true, true)) legend += page::LegendEntry("c0", "from a fitted position to its tag");
-    if (AnyPhoto(true, false)) legend += page::LegendEntry("c5", "to a tag that is not used");
-    if (AnyPhoto(false, false)) legend += page::LegendEntry("c1 ring", "photo without a tag");
+    std::string legend = LegendEntry("c1", "fitted camera positions") + LegendEntry("dashes", "GPS tags as recorded");
+    if (AnyPhoto(true, true)) legend += LegendEntry("c0", "from a fitted position to its tag");
+    if (AnyPhoto(true, false)) legend += LegendEntry("c5", "to a tag that is not used");
+    if (AnyPhoto(false, false)) legend += LegendEntry("c1 ring", "photo without a tag");
     std::string text = "Tags are drawn as recorded, before any correction";
     if (exaggeration_ > 1.0) text += fmt::format(", and <b>{:.0f} times too far</b> from the fitted positions", exaggeration_);
     return "<figcaption><div class=\"legend\">" + legend + "</div><p class=\"note\">" + text +
@@ -176,7 +179,7 @@ class GeoMapDrawing {
   const survey::Survey& survey_;
   Tags tags_;
   double exaggeration_;
-  MapFrame frame_;
+  DrawnMap frame_;
   double radius_px_ = 2.8;
 };
 
@@ -187,4 +190,4 @@ std::string GeoMap(const survey::Survey& survey) {
   return drawing.HasTags() ? drawing.Figure() : "";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

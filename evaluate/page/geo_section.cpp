@@ -6,11 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/page/html.h"
 #include "evaluate/page/page_parts.h"
 #include "evaluate/page/report_page.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -18,8 +17,8 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 // "0.30 ± 0.05 s"; the uncertainty is left out when unknown, and without a value there is an en dash.
 std::string WithSigma(double value, double sigma, int decimals, const char* unit) {
-  if (!std::isfinite(value) || !std::isfinite(sigma)) return page::FormatFixed(value, decimals, unit);
-  return page::FormatFixed(value, decimals) + " \xC2\xB1 " + page::FormatFixed(sigma, decimals, unit);
+  if (!std::isfinite(value) || !std::isfinite(sigma)) return FormatFixed(value, decimals, unit);
+  return FormatFixed(value, decimals) + " \xC2\xB1 " + FormatFixed(sigma, decimals, unit);
 }
 
 std::string FittedLead(const survey::Survey& survey) {
@@ -36,13 +35,12 @@ std::string FittedLead(const survey::Survey& survey) {
     if (fit.adjusted_to_tags) html += " Its shape is that of a bundle adjustment with the tags.";
   }
   if (fit.n_inliers > 0) {
-    html +=
-        fmt::format(" RMSE against the tags {} over {} of {} tagged photos: {} horizontal, {} vertical.", page::FormatFixed(fit.rmse_m, 2, "m"),
-                    fit.n_inliers, fit.n_matches, page::FormatFixed(fit.rmse_horizontal_m, 2, "m"), page::FormatFixed(fit.rmse_vertical_m, 2, "m"));
+    html += fmt::format(" RMSE against the tags {} over {} of {} tagged photos: {} horizontal, {} vertical.", FormatFixed(fit.rmse_m, 2, "m"),
+                        fit.n_inliers, fit.n_matches, FormatFixed(fit.rmse_horizontal_m, 2, "m"), FormatFixed(fit.rmse_vertical_m, 2, "m"));
   }
   return html + fmt::format(" Coordinates are metres east, north and up of the origin at latitude {}, longitude {}, height {}.</p>",
-                            page::FormatFixed(survey.origin.latitude_deg, 6, kDegree), page::FormatFixed(survey.origin.longitude_deg, 6, kDegree),
-                            page::FormatFixed(survey.origin.height_m, 1, "m"));
+                            FormatFixed(survey.origin.latitude_deg, 6, kDegree), FormatFixed(survey.origin.longitude_deg, 6, kDegree),
+                            FormatFixed(survey.origin.height_m, 1, "m"));
 }
 
 std::string LocalLead(const survey::Survey& survey) {
@@ -51,7 +49,7 @@ std::string LocalLead(const survey::Survey& survey) {
       "direction is north.</p>";
   std::string reasons;
   for (const survey::Problem& problem : survey.problems) {
-    if (problem.about_place) reasons += "<li>" + page::EscapeHtml(problem.finding) + ".</li>";
+    if (problem.about_place) reasons += "<li>" + EscapeHtml(problem.finding) + ".</li>";
   }
   if (reasons.empty()) return html;
   return html + "<div class=\"card prose\"><h3>Why</h3><ul>" + reasons + "</ul></div>\n";
@@ -79,9 +77,8 @@ void AddCorrectionRows(const survey::Survey& survey, FigureTable* table) {
   if (lag_known || fit.tag_lag_s != 0.0) {
     lag_meaning = "The tags show the position of this time before the photo.";
     if (std::isfinite(survey.checks.speed_mps)) {
-      lag_meaning =
-          fmt::format("The tags show the position of this time before the photo. At the flight's speed of {} that is {} along the track.",
-                      page::FormatFixed(survey.checks.speed_mps, 1, "m/s"), page::FormatFixed(fit.tag_lag_s * survey.checks.speed_mps, 1, "m"));
+      lag_meaning = fmt::format("The tags show the position of this time before the photo. At the flight's speed of {} that is {} along the track.",
+                                FormatFixed(survey.checks.speed_mps, 1, "m/s"), FormatFixed(fit.tag_lag_s * survey.checks.speed_mps, 1, "m"));
     }
   }
   table->Row("Lag of the tags", lag_known || fit.tag_lag_s != 0.0 ? WithSigma(fit.tag_lag_s, fit.tag_lag_sigma_s, 2, "s") : "none", lag_meaning);
@@ -101,10 +98,10 @@ void AddCheckRows(const survey::FlightChecks& checks, FigureTable* table) {
   } else if (std::isfinite(checks.smear_px)) {
     smear = fmt::format(
         "Motion of the picture at full size while the sensor is read out: {}{} and {}{}. Several pixels bend the model: fly slower or higher.",
-        page::FormatFixed(checks.speed_mps, 1, "m/s"), checks.speed_source.empty() ? "" : " (from " + checks.speed_source + ")",
-        page::FormatFixed(checks.readout_ms, 0, "ms"), checks.camera_name.empty() ? "" : " (" + checks.camera_name + ")");
+        FormatFixed(checks.speed_mps, 1, "m/s"), checks.speed_source.empty() ? "" : " (from " + checks.speed_source + ")",
+        FormatFixed(checks.readout_ms, 0, "ms"), checks.camera_name.empty() ? "" : " (" + checks.camera_name + ")");
   }
-  table->Row("Rolling shutter", page::FormatFixed(checks.smear_px, 1, "px"), smear);
+  table->Row("Rolling shutter", FormatFixed(checks.smear_px, 1, "px"), smear);
   table->Row("Doming", WithSigma(checks.dome_m, checks.dome_sigma_m, 2, "m"),
              "Height of the middle of the camera positions above their edge, against the tags. Beyond three times its uncertainty the model is bent: "
              "add oblique photos.");
@@ -129,10 +126,10 @@ std::string FlightTable(const survey::Survey& survey) {
     ++n_photos[flight];
     n_used[flight] += photo.gps_inlier ? 1 : 0;
   }
-  const auto count = [](int64_t n) { return page::NumberCell(static_cast<double>(n), page::FormatInteger(n)); };
+  const auto count = [](int64_t n) { return NumberCell(static_cast<double>(n), FormatInteger(n)); };
   const auto metres = [](const std::vector<double>& values, size_t i) {
     const double value = i < values.size() ? values[i] : kNotMeasured;
-    return page::NumberCell(value, page::FormatFixed(value, 2, "m"));
+    return NumberCell(value, FormatFixed(value, 2, "m"));
   };
   std::string html =
       "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Flight</th><th class=\"num\">Photos</th><th class=\"num\">Tags used</th>"
@@ -170,4 +167,4 @@ std::string GeoSection(const ReportInput& input) {
   return html + DirectionsTable(survey) + ResidualTable(survey) + "</section>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -5,7 +5,7 @@
 
 #include "core/survey/survey.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 // Simulated surveys: nothing had to be fitted.
 bool FrameIsExact(const survey::GeoFit& fit);
@@ -21,4 +21,4 @@ std::string DirectionsTable(const survey::Survey& survey);
 // Per photo, the largest residual first.
 std::string ResidualTable(const survey::Survey& survey);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -6,12 +6,11 @@
 #include <numbers>
 
 #include "core/page/figure.h"
-#include "core/page/html.h"
 #include "core/page/ticks.h"
 #include "evaluate/page/geo_section.h"
 #include "evaluate/page/page_parts.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -46,7 +45,7 @@ double LeanOf(const survey::GravityEvidence& evidence) {
 std::string ShownLean(const survey::GravityEvidence& evidence, bool georeferenced) {
   constexpr std::array<const char*, 8> kDirections = {"east", "north-east", "north", "north-west", "west", "south-west", "south", "south-east"};
   const double lean_deg = LeanOf(evidence);
-  std::string size = page::FormatFixed(lean_deg, 2, kDegree);
+  std::string size = FormatFixed(lean_deg, 2, kDegree);
   if (!(lean_deg >= 0.005) || !georeferenced) return size;
   const double eighth = std::atan2(evidence.lean_north_deg, evidence.lean_east_deg) / (0.25 * std::numbers::pi);
   return size + " to the " + kDirections[static_cast<size_t>(std::lround(eighth) + 8) % 8];
@@ -69,27 +68,26 @@ std::string TargetPlot(const std::vector<survey::GravityEvidence>& gravity, bool
   constexpr double kMiddle_px = 0.5 * kPlot_px;
   const double rim_deg = RimOf(gravity);
   const double px_per_deg = kRim_px / rim_deg;
-  std::string html = page::FigureBegin({.title = "Where each up leans",
-                                        .width_px = kPlot_px,
-                                        .height_px = kPlot_px,
-                                        .css_class = "target",
-                                        .spoken = "Direction of up by each kind of evidence, against the result in the middle"});
+  std::string html = FigureBegin({.title = "Where each up leans",
+                                  .width_px = kPlot_px,
+                                  .height_px = kPlot_px,
+                                  .css_class = "target",
+                                  .spoken = "Direction of up by each kind of evidence, against the result in the middle"});
   html += fmt::format("<clipPath id=\"gravity-rim\"><circle cx=\"{0}\" cy=\"{0}\" r=\"{1}\"/></clipPath>", kMiddle_px, kRim_px);
   const auto ring = [&](const char* css_class, double radius_px) {
     html += fmt::format("<circle class=\"{0}\" cx=\"{1}\" cy=\"{1}\" r=\"{2:.1f}\"/>", css_class, kMiddle_px, radius_px);
   };
-  html += page::SvgLine("grid", kMiddle_px - kRim_px, kMiddle_px + kRim_px, kMiddle_px, kMiddle_px);
-  html += page::SvgLine("grid", kMiddle_px, kMiddle_px, kMiddle_px - kRim_px, kMiddle_px + kRim_px);
-  for (const double tick : page::RoundTicks(0.0, rim_deg, 3)) {
+  html += SvgLine("grid", kMiddle_px - kRim_px, kMiddle_px + kRim_px, kMiddle_px, kMiddle_px);
+  html += SvgLine("grid", kMiddle_px, kMiddle_px, kMiddle_px - kRim_px, kMiddle_px + kRim_px);
+  for (const double tick : RoundTicks(0.0, rim_deg, 3)) {
     if (!(tick > 0.0)) continue;
     ring("ring", tick * px_per_deg);
     const double diagonal_px = tick * px_per_deg / std::numbers::sqrt2;
-    html +=
-        page::SvgText("tick", kMiddle_px + diagonal_px + 2.0, kMiddle_px + diagonal_px + 9.0, page::Anchor::kStart, page::TickLabel(tick) + kDegree);
+    html += SvgText("tick", kMiddle_px + diagonal_px + 2.0, kMiddle_px + diagonal_px + 9.0, Anchor::kStart, TickLabel(tick) + kDegree);
   }
   ring("rim", kRim_px);
-  html += page::SvgText("label", kMiddle_px, kMiddle_px - kRim_px - 8.0, page::Anchor::kMiddle, georeferenced ? "N" : "y");
-  html += page::SvgText("label", kMiddle_px + kRim_px + 8.0, kMiddle_px + 4.0, page::Anchor::kStart, georeferenced ? "E" : "x");
+  html += SvgText("label", kMiddle_px, kMiddle_px - kRim_px - 8.0, Anchor::kMiddle, georeferenced ? "N" : "y");
+  html += SvgText("label", kMiddle_px + kRim_px + 8.0, kMiddle_px + 4.0, Anchor::kStart, georeferenced ? "E" : "x");
   std::string legend;
   for (size_t i = 0; i < gravity.size(); ++i) {
     const survey::GravityEvidence& evidence = gravity[i];
@@ -98,27 +96,27 @@ std::string TargetPlot(const std::vector<survey::GravityEvidence>& gravity, bool
     const bool beyond = lean_deg > rim_deg, used = evidence.weight > 0.0;
     const double share = beyond ? rim_deg / lean_deg : 1.0;
     const double x = kMiddle_px + share * evidence.lean_east_deg * px_per_deg, y = kMiddle_px - share * evidence.lean_north_deg * px_per_deg;
-    const std::string title = page::EscapeHtml(fmt::format("{}: {}", NameOf(evidence), ShownLean(evidence, georeferenced)));
+    const std::string title = EscapeHtml(fmt::format("{}: {}", NameOf(evidence), ShownLean(evidence, georeferenced)));
     html += fmt::format("<g class=\"c{}\"><title>{}</title>", i % 10, title);
     if (!beyond && std::isfinite(evidence.sigma_deg)) {
       html += fmt::format("<circle class=\"error\" clip-path=\"url(#gravity-rim)\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", x, y,
                           evidence.sigma_deg * px_per_deg);
     }
     html += fmt::format("<circle class=\"dot{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4.5\"/></g>", used ? "" : " hollow", x, y);
-    legend += page::LegendEntry(fmt::format("c{} {}", i % 10, used ? "disc" : "ring"), NameOf(evidence) + (beyond ? " (beyond the rim)" : ""));
+    legend += LegendEntry(fmt::format("c{} {}", i % 10, used ? "disc" : "ring"), NameOf(evidence) + (beyond ? " (beyond the rim)" : ""));
   }
-  return html + page::FigureEnd(legend);
+  return html + FigureEnd(legend);
 }
 
 std::string EvidenceRow(const survey::GravityEvidence& evidence, bool georeferenced) {
   const double percent = 100.0 * std::clamp(evidence.weight, 0.0, 1.0);
-  std::string html = "<tr>" + page::TextCell(NameOf(evidence)) + page::TextCell(MeaningOf(evidence));
-  html += page::NumberCell(evidence.n, page::FormatInteger(evidence.n));
-  html += page::NumberCell(LeanOf(evidence), ShownLean(evidence, georeferenced)) +
-          page::NumberCell(evidence.sigma_deg, page::FormatFixed(evidence.sigma_deg, 2, kDegree));
-  if (!(evidence.weight > 0.0)) return html + page::NumberCell(0.0, "not used") + "</tr>";
+  std::string html = "<tr>" + TextCell(NameOf(evidence)) + TextCell(MeaningOf(evidence));
+  html += NumberCell(evidence.n, FormatInteger(evidence.n));
+  html +=
+      NumberCell(LeanOf(evidence), ShownLean(evidence, georeferenced)) + NumberCell(evidence.sigma_deg, FormatFixed(evidence.sigma_deg, 2, kDegree));
+  if (!(evidence.weight > 0.0)) return html + NumberCell(0.0, "not used") + "</tr>";
   return html + fmt::format("<td class=\"num bar\" data-v=\"{}\"><i style=\"--share:{:.3f}\"></i>{}</td></tr>", percent, 0.01 * percent,
-                            page::FormatFixed(percent, percent < 9.95 ? 1 : 0, "%"));
+                            FormatFixed(percent, percent < 9.95 ? 1 : 0, "%"));
 }
 
 }  // namespace
@@ -134,11 +132,11 @@ std::string GravityEvidenceTable(const survey::Survey& survey) {
   for (const survey::GravityEvidence& evidence : fit.gravity) html += EvidenceRow(evidence, survey.georeferenced);
   html += "</tbody></table></div><p class=\"note\">";
   if (std::isfinite(fit.tags_alone_tilt_deg)) {
-    html += fmt::format("A fit to the tags alone would tilt the survey by {}. ", page::FormatFixed(fit.tags_alone_tilt_deg, 1, kDegree));
+    html += fmt::format("A fit to the tags alone would tilt the survey by {}. ", FormatFixed(fit.tags_alone_tilt_deg, 1, kDegree));
   }
   return html +
          "Leans are angles against the result, which is the middle of the plot. Accuracy, the circle about each point, is one standard deviation. "
          "Weight is the share in what is known of gravity.</p></div></div></div>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -11,7 +11,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -120,4 +120,4 @@ InputFiles ReadInputFiles(const std::filesystem::path& csv) {
   }
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 // Files that were taken or left out for one reason.
 struct InputGroup {
@@ -33,4 +33,4 @@ InputFiles ParseInputFiles(const std::string& csv);
 // Empty when there is no such file, as in projects of earlier versions, or it cannot be read.
 InputFiles ReadInputFiles(const std::filesystem::path& csv);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

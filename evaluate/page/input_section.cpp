@@ -1,24 +1,22 @@
 #include <fmt/core.h>
 
 #include "core/base/text.h"
-#include "core/page/html.h"
 #include "evaluate/page/page_parts.h"
 #include "evaluate/page/report_page.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
 std::string Counted(int64_t n, const char* one, const char* several) {
-  return page::FormatInteger(n) + " " + (n == 1 ? one : several);
+  return FormatInteger(n) + " " + (n == 1 ? one : several);
 }
 
 std::string GroupRow(const InputGroup& group) {
   const std::string reason = group.several ? "each its own, such as: " + group.reason : group.reason;
   const bool more = group.n > static_cast<int64_t>(group.examples.size());
-  return "<tr>" + page::TextCell(group.kind) + page::TextCell(group.taken ? "yes" : "no") +
-         page::NumberCell(static_cast<double>(group.n), page::FormatInteger(group.n)) + page::TextCell(reason) +
-         page::TextCell(base::Join(group.examples) + (more ? ", ..." : "")) + "</tr>";
+  return "<tr>" + TextCell(group.kind) + TextCell(group.taken ? "yes" : "no") + NumberCell(static_cast<double>(group.n), FormatInteger(group.n)) +
+         TextCell(reason) + TextCell(base::Join(group.examples) + (more ? ", ..." : "")) + "</tr>";
 }
 
 }  // namespace
@@ -37,4 +35,4 @@ std::string InputSection(const ReportInput& input) {
   return html + "</tbody></table></div></section>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

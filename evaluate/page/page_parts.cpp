@@ -6,17 +6,16 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/page/html.h"
-#include "evaluate/metrics/metrics.h"
+#include "evaluate/measured.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 void FigureTable::Group(const char* name) {
   html_ += fmt::format("{}<tbody><tr class=\"group\"><th colspan=\"3\" scope=\"rowgroup\">{}</th></tr>", html_.empty() ? "" : "</tbody>", name);
 }
 
 void FigureTable::Row(const std::string& name, const std::string& value, const std::string& meaning) {
-  html_ += "<tr>" + page::TextCell(name) + "<td class=\"num\">" + value + "</td>" + page::TextCell(meaning) + "</tr>";
+  html_ += "<tr>" + TextCell(name) + "<td class=\"num\">" + value + "</td>" + TextCell(meaning) + "</tr>";
 }
 
 std::string FigureTable::Html() const {
@@ -25,7 +24,7 @@ std::string FigureTable::Html() const {
 }
 
 std::string Chip(const std::string& label, const std::string& value, const std::string& css_class) {
-  return fmt::format("<span class=\"chip{}{}\"><b>{}</b>{}</span>", css_class.empty() ? "" : " ", css_class, value, page::EscapeHtml(label));
+  return fmt::format("<span class=\"chip{}{}\"><b>{}</b>{}</span>", css_class.empty() ? "" : " ", css_class, value, EscapeHtml(label));
 }
 
 std::string Picture(const std::string& kind, const std::string& file, int width, int height, const std::string& caption, const std::string& legend) {
@@ -33,7 +32,7 @@ std::string Picture(const std::string& kind, const std::string& file, int width,
   return fmt::format(
       "<figure class=\"pic {0}\"><img src=\"{1}\" width=\"{2}\" height=\"{3}\" loading=\"lazy\" alt=\"{4}\" data-kind=\"{0}\"><figcaption>{4}{5}"
       "</figcaption></figure>",
-      kind, page::EscapeHtml(file), width, height, page::EscapeHtml(caption), legend);
+      kind, EscapeHtml(file), width, height, EscapeHtml(caption), legend);
 }
 
 std::string BarRow(const std::string& name, double percent, const std::string& value) {
@@ -41,14 +40,14 @@ std::string BarRow(const std::string& name, double percent, const std::string& v
 }
 
 std::string Fact(const std::string& name, const std::string& value) {
-  return fmt::format("<dt>{}</dt><dd>{}</dd>", page::EscapeHtml(name), value);
+  return fmt::format("<dt>{}</dt><dd>{}</dd>", EscapeHtml(name), value);
 }
 
 std::string RangeOf(const std::vector<double>& values, int decimals, const char* unit) {
-  if (values.empty()) return page::FormatFixed(kNotMeasured, decimals);
+  if (values.empty()) return FormatFixed(kNotMeasured, decimals);
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const std::string low_text = page::FormatFixed(*low, decimals), high_text = page::FormatFixed(*high, decimals, unit);
-  return page::FormatFixed(*low, decimals, unit) == high_text ? high_text : low_text + " \xE2\x80\x93 " + high_text;
+  const std::string low_text = FormatFixed(*low, decimals), high_text = FormatFixed(*high, decimals, unit);
+  return FormatFixed(*low, decimals, unit) == high_text ? high_text : low_text + " \xE2\x80\x93 " + high_text;
 }
 
 std::string TwoDigits(double value, const char* unit) {
@@ -56,13 +55,13 @@ std::string TwoDigits(double value, const char* unit) {
   // Limits half a unit below the powers of ten: 9.96 becomes 10, not 10.0.
   int decimals = 0;
   for (double limit = 9.95; decimals < 4 && size < limit; limit /= 10.0) ++decimals;
-  return page::FormatFixed(value, std::isfinite(value) && size > 0.0 ? decimals : 0, unit);
+  return FormatFixed(value, std::isfinite(value) && size > 0.0 ? decimals : 0, unit);
 }
 
 std::string ShownDuration(double seconds) {
-  if (!std::isfinite(seconds)) return page::FormatFixed(seconds, 0);
+  if (!std::isfinite(seconds)) return FormatFixed(seconds, 0);
   constexpr const char* kSpace = "\xE2\x80\xAF";
-  if (seconds < 59.95) return page::FormatFixed(seconds, 1, "s");
+  if (seconds < 59.95) return FormatFixed(seconds, 1, "s");
   const auto whole = static_cast<int64_t>(std::llround(seconds));
   if (whole < 3600) return fmt::format("{0}{2}min {1:02}{2}s", whole / 60, whole % 60, kSpace);
   const auto minutes = static_cast<int64_t>(std::llround(seconds / 60.0));
@@ -74,4 +73,4 @@ std::string ShownDate(const std::string& utc_timestamp) {
   return known ? utc_timestamp.substr(0, 10) + " " + utc_timestamp.substr(11, 5) + " UTC" : utc_timestamp;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -4,7 +4,11 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::evaluate {
+#include "core/page/html.h"
+
+namespace skyquilt::evaluate::page {
+
+using namespace skyquilt::page;  // This page is made of the parts of every page of the program, and of those here.
 
 inline constexpr const char* kDegree = "\xC2\xB0";
 
@@ -37,4 +41,4 @@ std::string ShownDuration(double seconds);
 // "2026-01-31T12:00:00Z" as "2026-01-31 12:00 UTC"; other texts stay as they are.
 std::string ShownDate(const std::string& utc_timestamp);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

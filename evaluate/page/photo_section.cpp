@@ -2,46 +2,44 @@
 
 #include <cmath>
 
-#include "core/page/html.h"
 #include "evaluate/page/page_parts.h"
 #include "evaluate/page/report_page.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
 std::string Legend(const ReportInput& input, const std::string& low, const std::string& high) {
   if (input.color_ramp.empty()) return "";
-  return fmt::format("<span class=\"ramp\">{}<i style=\"background-image:url({})\"></i>{}</span>", low, page::EscapeHtml(input.color_ramp), high);
+  return fmt::format("<span class=\"ramp\">{}<i style=\"background-image:url({})\"></i>{}</span>", low, EscapeHtml(input.color_ramp), high);
 }
 
 std::string PhotoCard(const ReportInput& input, size_t index) {
-  const PhotoScore& score = input.metrics->photos[index];
+  const photos::PhotoScore& score = input.metrics->photos[index];
   const PhotoImages& images = input.images[index];
   std::string html =
       fmt::format("<article class=\"card photo\" id=\"photo-{}\" data-order=\"{}\" data-psnr=\"{}\"><header><h3>{}</h3><div class=\"chips\">", index,
-                  index, std::isfinite(score.psnr_db) ? fmt::format("{:.4f}", score.psnr_db) : "", page::EscapeHtml(score.name));
-  html += Chip("PSNR", page::FormatFixed(score.psnr_db, 2, "dB"), "main");
-  html += Chip("SSIM", page::FormatFixed(score.ssim, 3));
-  html += Chip("FLIP", page::FormatFixed(score.flip, 3));
-  html += Chip("coverage", page::FormatPercent(score.Coverage()));
-  html += Chip("full frame", page::FormatFixed(score.psnr_full_db, 2, "dB"));
-  if (input.metrics->has_truth) html += Chip("median depth error", page::FormatFixed(score.depth_median_abs_m, 2, "m"));
+                  index, std::isfinite(score.psnr_db) ? fmt::format("{:.4f}", score.psnr_db) : "", EscapeHtml(score.name));
+  html += Chip("PSNR", FormatFixed(score.psnr_db, 2, "dB"), "main");
+  html += Chip("SSIM", FormatFixed(score.ssim, 3));
+  html += Chip("FLIP", FormatFixed(score.flip, 3));
+  html += Chip("coverage", FormatPercent(score.Coverage()));
+  html += Chip("full frame", FormatFixed(score.psnr_full_db, 2, "dB"));
+  if (input.metrics->has_truth) html += Chip("median depth error", FormatFixed(score.depth_median_abs_m, 2, "m"));
   html += "</div></header><div class=\"pics\">";
   html += fmt::format(
       "<figure class=\"pic slider\"><div class=\"compare\" style=\"aspect-ratio:{0}/{1}\"><img src=\"{2}\" loading=\"lazy\" alt=\"Render\"><img "
       "class=\"top\" src=\"{3}\" loading=\"lazy\" alt=\"Photo\"><i></i><span class=\"tag l\">Photo</span><span class=\"tag r\">Render</span><input "
       "type=\"range\" min=\"0\" max=\"100\" step=\"0.1\" value=\"50\" aria-label=\"Move between photo and render\"></div><figcaption>Drag to compare "
       "photo and render</figcaption></figure>",
-      images.width, images.height, page::EscapeHtml(images.render), page::EscapeHtml(images.photo));
+      images.width, images.height, EscapeHtml(images.render), EscapeHtml(images.photo));
   const auto picture = [&](const char* kind, const std::string& file, const char* caption, const std::string& legend = "") {
     html += Picture(kind, file, images.width, images.height, caption, legend);
   };
   picture("photo-pic", images.photo, "Photo");
   picture("render-pic", images.render, "Render");
-  picture("error-pic", images.error, "Error", Legend(input, "0", page::FormatFixed(input.error_high, 2)));
-  picture("depth-pic", images.depth, "Depth",
-          Legend(input, page::FormatFixed(images.depth_low_m, 1), page::FormatFixed(images.depth_high_m, 1, "m")));
+  picture("error-pic", images.error, "Error", Legend(input, "0", FormatFixed(input.error_high, 2)));
+  picture("depth-pic", images.depth, "Depth", Legend(input, FormatFixed(images.depth_low_m, 1), FormatFixed(images.depth_high_m, 1, "m")));
   picture("normals-pic", images.normals, "Normals of the render");
   picture("true-normals-pic", images.true_normals, "True normals");
   return html + "</div></article>\n";
@@ -57,25 +55,22 @@ std::string PhotoTable(const ReportInput& input) {
   if (truth) html += "<th class=\"num\">Depth error, RMSE</th><th class=\"num\">Depth error, median</th>";
   html += "<th class=\"num\">Exposure gain</th><th class=\"num\">Size</th><th class=\"num\">Render time</th></tr></thead><tbody>";
   for (size_t i = 0; i < input.metrics->photos.size(); ++i) {
-    const PhotoScore& score = input.metrics->photos[i];
+    const photos::PhotoScore& score = input.metrics->photos[i];
     const bool pictured = i < input.images.size() && !input.images[i].photo.empty();
-    html +=
-        pictured ? fmt::format("<tr><td><a href=\"#photo-{}\">{}</a></td>", i, page::EscapeHtml(score.name)) : "<tr>" + page::TextCell(score.name);
-    html +=
-        page::NumberCell(score.psnr_db, page::FormatFixed(score.psnr_db, 2, "dB")) + page::NumberCell(score.ssim, page::FormatFixed(score.ssim, 3));
-    html += page::NumberCell(score.flip, page::FormatFixed(score.flip, 3));
-    html += page::NumberCell(score.Coverage(), page::FormatPercent(score.Coverage()));
-    html += page::NumberCell(score.psnr_full_db, page::FormatFixed(score.psnr_full_db, 2, "dB")) +
-            page::NumberCell(score.ssim_full, page::FormatFixed(score.ssim_full, 3));
-    html += page::NumberCell(score.flip_full, page::FormatFixed(score.flip_full, 3));
-    html += page::NumberCell(score.lpips, page::FormatFixed(score.lpips, 3));
+    html += pictured ? fmt::format("<tr><td><a href=\"#photo-{}\">{}</a></td>", i, EscapeHtml(score.name)) : "<tr>" + TextCell(score.name);
+    html += NumberCell(score.psnr_db, FormatFixed(score.psnr_db, 2, "dB")) + NumberCell(score.ssim, FormatFixed(score.ssim, 3));
+    html += NumberCell(score.flip, FormatFixed(score.flip, 3));
+    html += NumberCell(score.Coverage(), FormatPercent(score.Coverage()));
+    html += NumberCell(score.psnr_full_db, FormatFixed(score.psnr_full_db, 2, "dB")) + NumberCell(score.ssim_full, FormatFixed(score.ssim_full, 3));
+    html += NumberCell(score.flip_full, FormatFixed(score.flip_full, 3));
+    html += NumberCell(score.lpips, FormatFixed(score.lpips, 3));
     if (truth) {
-      html += page::NumberCell(score.depth_rmse_m, page::FormatFixed(score.depth_rmse_m, 2, "m"));
-      html += page::NumberCell(score.depth_median_abs_m, page::FormatFixed(score.depth_median_abs_m, 2, "m"));
+      html += NumberCell(score.depth_rmse_m, FormatFixed(score.depth_rmse_m, 2, "m"));
+      html += NumberCell(score.depth_median_abs_m, FormatFixed(score.depth_median_abs_m, 2, "m"));
     }
-    html += page::NumberCell(score.exposure_gain, page::FormatFixed(score.exposure_gain, 3));
-    html += page::NumberCell(score.width, fmt::format("{} \xC3\x97 {}", score.width, score.height));
-    html += page::NumberCell(score.render_seconds, page::FormatFixed(score.render_seconds, 2, "s")) + "</tr>";
+    html += NumberCell(score.exposure_gain, FormatFixed(score.exposure_gain, 3));
+    html += NumberCell(score.width, fmt::format("{} \xC3\x97 {}", score.width, score.height));
+    html += NumberCell(score.render_seconds, FormatFixed(score.render_seconds, 2, "s")) + "</tr>";
   }
   return html + "</tbody></table></div>\n";
 }
@@ -106,4 +101,4 @@ std::string PhotoSection(const ReportInput& input) {
   return html + PhotoTable(input) + "</section>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

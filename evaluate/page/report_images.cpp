@@ -13,7 +13,7 @@
 #include "core/base/order_statistics.h"
 #include "core/image/normal_image.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -170,4 +170,4 @@ std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& prod
   }
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -10,7 +10,7 @@
 #include "core/image/image.h"
 #include "evaluate/page/report_page.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 struct PhotoPixels {
   const image::Image8* photo = nullptr;
@@ -43,4 +43,4 @@ std::string WriteColorRamp(const std::filesystem::path& report_folder);
 // preview with most detail, products/preview_ortho.png or preview_context.png with its .json. Nothing when either file is missing or damaged.
 std::optional<MapBackground> CopyMapBackground(const std::filesystem::path& products_folder, const std::filesystem::path& report_folder);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -8,11 +8,10 @@
 
 #include "core/base/errors.h"
 #include "core/page/curve_chart.h"
-#include "core/page/html.h"
 #include "core/page/page_frame.h"
 #include "evaluate/page/page_parts.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -22,7 +21,7 @@ std::string Toggle(const char* layer, const std::string& label, const char* mark
 
 std::string BlockBars(const ReportInput& input) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const BlockScore& block : input.metrics->blocks) {
+  for (const metrics::BlockScore& block : input.metrics->blocks) {
     if (!std::isfinite(block.psnr_db)) continue;
     low = std::min(low, block.psnr_db);
     high = std::max(high, block.psnr_db);
@@ -31,18 +30,17 @@ std::string BlockBars(const ReportInput& input) {
   if (input.metrics->blocks.empty() || !std::isfinite(low)) return html + "<p class=\"empty\">No block was scored.</p></div>";
   // Bars start a little below the worst block: differences of tenths of a decibel are what one looks for.
   const double base = std::max(0.0, std::floor(low - 0.35 * std::max(high - low, 1.0)));
-  std::vector<const BlockScore*> order;
-  for (const BlockScore& block : input.metrics->blocks) order.push_back(&block);
-  std::stable_sort(order.begin(), order.end(), [](const BlockScore* a, const BlockScore* b) {
+  std::vector<const metrics::BlockScore*> order;
+  for (const metrics::BlockScore& block : input.metrics->blocks) order.push_back(&block);
+  std::stable_sort(order.begin(), order.end(), [](const metrics::BlockScore* a, const metrics::BlockScore* b) {
     return std::isfinite(a->psnr_db) && (!std::isfinite(b->psnr_db) || a->psnr_db > b->psnr_db);
   });
   html += "<div class=\"rows\">";
-  for (const BlockScore* block : order) {
+  for (const metrics::BlockScore* block : order) {
     const double share = std::isfinite(block->psnr_db) ? std::clamp((block->psnr_db - base) / std::max(high - base, 1e-9), 0.0, 1.0) : 0.0;
-    html += BarRow(fmt::format("<a href=\"#block-{0}\">{0}</a>", page::EscapeHtml(block->name)), 100.0 * share,
-                   page::FormatFixed(block->psnr_db, 2, "dB"));
+    html += BarRow(fmt::format("<a href=\"#block-{0}\">{0}</a>", EscapeHtml(block->name)), 100.0 * share, FormatFixed(block->psnr_db, 2, "dB"));
   }
-  return html + fmt::format("</div><p class=\"note\">The bars start at {}.</p></div>", page::FormatFixed(base, 0, "dB"));
+  return html + fmt::format("</div><p class=\"note\">The bars start at {}.</p></div>", FormatFixed(base, 0, "dB"));
 }
 
 std::string BlockFacts(const ReportInput& input) {
@@ -68,7 +66,7 @@ std::string BlockFacts(const ReportInput& input) {
 }
 
 std::string OrthophotoLabel(const MapBackground& background) {
-  return background.preview.empty() ? "Orthophoto" : "Orthophoto (preview: from the " + page::EscapeHtml(background.preview) + ")";
+  return background.preview.empty() ? "Orthophoto" : "Orthophoto (preview: from the " + EscapeHtml(background.preview) + ")";
 }
 
 std::string MapSection(const ReportInput& input) {
@@ -101,22 +99,21 @@ std::string PhaseBars(const ReportInput& input) {
   std::stable_sort(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string html = "<div class=\"card bars\"><h3>Where training time goes</h3><div class=\"rows\">";
   for (const auto& [phase, seconds] : phases) {
-    html += BarRow("<em>" + page::EscapeHtml(phase) + "</em>", 100.0 * seconds / phases.front().second,
-                   page::FormatFixed(100.0 * seconds / total, 1, "%"));
+    html += BarRow("<em>" + EscapeHtml(phase) + "</em>", 100.0 * seconds / phases.front().second, FormatFixed(100.0 * seconds / total, 1, "%"));
   }
   return html + fmt::format("</div><p class=\"note\">{} of work, summed over all threads. {} samples per ray.</p></div>", ShownDuration(total),
-                            page::FormatFixed(input.training->SamplesPerRay(), 1));
+                            FormatFixed(input.training->SamplesPerRay(), 1));
 }
 
 std::string TrainingSection(const ReportInput& input) {
-  std::vector<page::Curve> loss, psnr;
+  std::vector<Curve> loss, psnr;
   for (const scene::FieldTraining& field : input.training->fields) {
-    page::Curve loss_curve{field.name, {}, field.name == "context"};
-    page::Curve psnr_curve = loss_curve;
+    Curve loss_curve{field.name, {}, field.name == "context"};
+    Curve psnr_curve = loss_curve;
     const auto curve = input.curves.find(field.name);
-    static const std::vector<CurvePoint> kNone;
-    const std::vector<CurvePoint>& points = curve == input.curves.end() ? kNone : curve->second;
-    for (const CurvePoint& point : points) {
+    static const std::vector<metrics::CurvePoint> kNone;
+    const std::vector<metrics::CurvePoint>& points = curve == input.curves.end() ? kNone : curve->second;
+    for (const metrics::CurvePoint& point : points) {
       const double x = std::isfinite(point.seconds) ? point.seconds : point.step;
       loss_curve.points.emplace_back(x, point.loss);
       psnr_curve.points.emplace_back(x, point.psnr_db);
@@ -125,8 +122,8 @@ std::string TrainingSection(const ReportInput& input) {
     psnr.push_back(std::move(psnr_curve));
   }
   return "<section id=\"training\"><div class=\"heading\"><h2>Training</h2></div><div class=\"chart-grid\">" +
-         page::CurveChart(loss, {.title = "Loss", .x_label = "training time of the block (s)", .y_label = "loss", .log_y = true}) +
-         page::CurveChart(psnr, {.title = "PSNR of the training rays", .x_label = "training time of the block (s)", .y_label = "PSNR (dB)"}) +
+         CurveChart(loss, {.title = "Loss", .x_label = "training time of the block (s)", .y_label = "loss", .log_y = true}) +
+         CurveChart(psnr, {.title = "PSNR of the training rays", .x_label = "training time of the block (s)", .y_label = "PSNR (dB)"}) +
          PhaseBars(input) + "</div></section>\n";
 }
 
@@ -138,11 +135,11 @@ std::string BuildReportPage(const ReportInput& input) {
   SKYQUILT_CHECK(input.images.empty() || input.images.size() == input.metrics->photos.size(), "one entry of images per scored photo");
   const std::string brightness = BrightnessSection(input), made = SurfaceSection(input), found = BuildingsSection(input);
   const std::string control = ControlSection(input), files = InputSection(input);
-  page::PageFrame frame{.title = input.title,
-                        .window_title = "Skyquilt report",
-                        .subtitle = fmt::format("Survey report \xC2\xB7 {} \xC2\xB7 {} photos, {} blocks", ShownDate(input.metrics->date),
-                                                page::FormatInteger(input.metrics->n_photos), input.blocks->blocks.size()),
-                        .anchors = {{"summary", "Summary"}, {"map-section", "Map"}, {"photos", "Photos"}}};
+  PageFrame frame{.title = input.title,
+                  .window_title = "Skyquilt report",
+                  .subtitle = fmt::format("Survey report \xC2\xB7 {} \xC2\xB7 {} photos, {} blocks", ShownDate(input.metrics->date),
+                                          FormatInteger(input.metrics->n_photos), input.blocks->blocks.size()),
+                  .anchors = {{"summary", "Summary"}, {"map-section", "Map"}, {"photos", "Photos"}}};
   if (!made.empty()) frame.anchors.emplace_back("surface", "Surface");
   if (!found.empty()) frame.anchors.emplace_back("buildings", "Buildings");
   frame.anchors.emplace_back("geo", "Geo-reference");
@@ -151,8 +148,8 @@ std::string BuildReportPage(const ReportInput& input) {
   frame.anchors.emplace_back("details", "Details");
   if (!brightness.empty()) frame.anchors.emplace_back("brightness", "Brightness");
   frame.anchors.insert(frame.anchors.end(), {{"training", "Training"}, {"method", "Method"}});
-  return page::PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + made + found +
-         GeoSection(input) + control + files + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + page::PageEnd();
+  return PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + made + found +
+         GeoSection(input) + control + files + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + PageEnd();
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -11,11 +11,15 @@
 #include "evaluate/control/control_pictures.h"
 #include "evaluate/metrics/metrics.h"
 #include "evaluate/metrics/training_curve.h"
+#include "evaluate/page/brightness_report.h"
 #include "evaluate/page/input_files.h"
-#include "evaluate/photos/brightness_report.h"
 #include "partition/block.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
+struct BuildingsReport;
+}
+
+namespace skyquilt::evaluate::page {
 
 // Pictures of one held-out photo; paths relative to the page, empty when not written.
 struct PhotoImages {
@@ -36,20 +40,18 @@ struct MapBackground {
   std::string preview = {};  // what a preview of the orthophoto was made from; empty for the orthophoto
 };
 
-struct BuildingsReport;  // buildings_report.h
-
 struct ReportInput {
   std::string title;  // name of the project
-  const Metrics* metrics = nullptr;
+  const metrics::Metrics* metrics = nullptr;
   const survey::Survey* survey = nullptr;
   const partition::BlockSet* blocks = nullptr;
-  const scene::TrainReport* training = nullptr;  // without fields when it is unknown
-  Curves curves;                                 // of its fields
-  const BrightnessReport* brightness = nullptr;  // nothing or empty: no such section
-  const BuildingsReport* buildings = nullptr;    // nothing: no such section
-  InputFiles files;                              // of the photo folder
-  std::vector<PhotoImages> images;               // entry i belongs to metrics->photos[i]
-  std::vector<MarkPicture> mark_pictures;        // of the survey's control points, in their order
+  const scene::TrainReport* training = nullptr;           // without fields when it is unknown
+  metrics::Curves curves;                                 // of its fields
+  const BrightnessReport* brightness = nullptr;           // nothing or empty: no such section
+  const buildings::BuildingsReport* buildings = nullptr;  // nothing: no such section
+  InputFiles files;                                       // of the photo folder
+  std::vector<PhotoImages> images;                        // entry i belongs to metrics->photos[i]
+  std::vector<control::MarkPicture> mark_pictures;        // of the survey's control points, in their order
   std::optional<MapBackground> background;
   std::string color_ramp;    // picture of the colour map from low to high, relative to the page; empty: no legend
   double error_high = 0.25;  // display values at the top of the error colours
@@ -59,18 +61,18 @@ std::string BuildReportPage(const ReportInput& input);
 
 // Parts of the page, each a <section> or a piece of one.
 std::string SummarySection(const ReportInput& input);  // the key figures of the first screen
-std::string WarningsBanner(const Metrics& metrics);
+std::string WarningsBanner(const metrics::Metrics& metrics);
 std::string BlockMapSvg(const ReportInput& input);
 std::string PhotoSection(const ReportInput& input);
-std::string SurfaceSection(const ReportInput& input);    // what was made of the scene's surface, and its scores; empty without a surface
-std::string BuildingsSection(const ReportInput& input);  // the found buildings, and their scores; empty when none were searched
-std::string GeoSection(const ReportInput& input);        // how the survey was placed on Earth; see geo_section.h
-std::string ControlSection(const ReportInput& input);    // control and check points, see control_section.h; empty without any
-std::string InputSection(const ReportInput& input);      // what the photo folder had; empty when nothing in it is remarkable
-std::string DetailsSection(const ReportInput& input);    // every figure and its meaning
-std::string ClassTable(const Metrics& metrics);          // empty without true classes
+std::string SurfaceSection(const ReportInput& input);     // what was made of the scene's surface, and its scores; empty without a surface
+std::string BuildingsSection(const ReportInput& input);   // the found buildings, and their scores; empty when none were searched
+std::string GeoSection(const ReportInput& input);         // how the survey was placed on Earth; see geo_section.h
+std::string ControlSection(const ReportInput& input);     // control and check points, see control_section.h; empty without any
+std::string InputSection(const ReportInput& input);       // what the photo folder had; empty when nothing in it is remarkable
+std::string DetailsSection(const ReportInput& input);     // every figure and its meaning
+std::string ClassTable(const metrics::Metrics& metrics);  // empty without true classes
 std::string MethodSection(const ReportInput& input);
 std::string BrightnessSection(const ReportInput& input);  // empty without brightness
 std::string BlockTable(const ReportInput& input);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

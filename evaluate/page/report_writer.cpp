@@ -10,8 +10,9 @@
 #include "core/base/file.h"
 #include "evaluate/page/report_images.h"
 #include "evaluate/photos/choose_photos.h"
+#include "evaluate/photos/picture_of_colors.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -26,13 +27,13 @@ std::string TitleOf(const std::filesystem::path& project_folder) {
 }
 
 // Removes images of an earlier evaluation that the page no longer shows.
-void RemoveStalePictures(const std::filesystem::path& report_folder, const ReportInput& page, const BuildingsReport* found) {
+void RemoveStalePictures(const std::filesystem::path& report_folder, const ReportInput& page, const buildings::BuildingsReport* found) {
   std::set<std::string> kept;
   if (page.background) kept.insert(page.background->image);
   for (const PhotoImages& one : page.images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh});
-  for (const MarkPicture& one : page.mark_pictures) kept.insert({one.photo, one.render});
+  for (const control::MarkPicture& one : page.mark_pictures) kept.insert({one.photo, one.render});
   if (found != nullptr) {
-    for (const BuildingPicture& one : found->pictures) kept.insert(one.file);
+    for (const buildings::BuildingPicture& one : found->pictures) kept.insert(one.file);
   }
   std::vector<std::filesystem::path> stale;
   std::error_code ignored;
@@ -49,8 +50,8 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
 ReportPictures::ReportPictures(const EvaluateInput& input, const std::vector<int>& held_out)
     : input_(input), brightness_(CollectBrightness(input.scene->info(), *input.survey, *input.pixels)) {
   if (input.options.report_photos == 0) return;
-  pictured_ = SelectEvenly(held_out, input.options.report_photos);
-  with_mesh_ = SelectEvenly(pictured_, kPhotosWithMesh);
+  pictured_ = photos::SelectEvenly(held_out, input.options.report_photos);
+  with_mesh_ = photos::SelectEvenly(pictured_, kPhotosWithMesh);
   contrasted_ = ChooseViews(input.scene->info(), *input.survey, held_out);
   written_.views.resize(contrasted_.size());
 }
@@ -65,8 +66,8 @@ bool ReportPictures::ShowsNormal(int photo) const {
   return std::find(contrasted_.begin(), contrasted_.end(), photo) != contrasted_.end();
 }
 
-void ReportPictures::Write(const ScoredPhoto& scored) {
-  const PhotoResult& findings = scored.findings;
+void ReportPictures::Write(const photos::ScoredPhoto& scored) {
+  const photos::PhotoResult& findings = scored.findings;
   const int photo = findings.score.photo;
   written_.images.emplace_back();
   if (std::find(pictured_.begin(), pictured_.end(), photo) != pictured_.end()) {
@@ -84,9 +85,9 @@ void ReportPictures::Write(const ScoredPhoto& scored) {
   if (place != contrasted_.end()) WriteView(scored, static_cast<size_t>(place - contrasted_.begin()));
 }
 
-void ReportPictures::WriteView(const ScoredPhoto& scored, size_t view) {
-  const PhotoScore& score = scored.findings.score;
-  const image::Image8 normal = PictureOf(scored.normal, scored.task.camera.width, scored.task.camera.height);
+void ReportPictures::WriteView(const photos::ScoredPhoto& scored, size_t view) {
+  const photos::PhotoScore& score = scored.findings.score;
+  const image::Image8 normal = photos::PictureOf(scored.normal, scored.task.camera.width, scored.task.camera.height);
   BrightnessView& shown = written_.views[view];
   shown = WriteBrightnessView(scored.task.photo, scored.findings.render, normal, input_.ReportFolder(), fmt::format("brightness_{}", view),
                               input_.options.report_image_width);
@@ -94,8 +95,8 @@ void ReportPictures::WriteView(const ScoredPhoto& scored, size_t view) {
   shown.stops = ExposureStops(input_.scene->info().response, static_cast<size_t>(score.photo));
 }
 
-void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures, std::vector<MarkPicture> marks,
-                 BuildingsReport* found) {
+void WriteReport(const EvaluateInput& input, const metrics::Metrics& metrics, const ReportPictures& pictures, std::vector<control::MarkPicture> marks,
+                 buildings::BuildingsReport* found) {
   const std::filesystem::path report_folder = input.ReportFolder();
   const scene::TrainReport unknown;
   std::vector<std::string> names;
@@ -108,15 +109,15 @@ void WriteReport(const EvaluateInput& input, const Metrics& metrics, const Repor
   page.survey = input.survey;
   page.blocks = input.blocks;
   page.training = input.training == nullptr ? &unknown : input.training;
-  page.curves = ReadCurves(input.project_folder / "checkpoints", names);
+  page.curves = metrics::ReadCurves(input.project_folder / "checkpoints", names);
   const BrightnessReport brightness = pictures.Brightness();
   page.brightness = &brightness;
   page.images = pictures.written().images;
   page.files = ReadInputFiles(input.project_folder / "survey" / "input.csv");
   page.mark_pictures = std::move(marks);
   if (found != nullptr) {
-    const buildings::BuildingSet& set = found->compared.set;
-    found->pictures = WriteBuildingPictures(set, BuildingsWithCards(set), *input.survey, *input.pixels, report_folder);
+    const skyquilt::buildings::BuildingSet& set = found->compared.set;
+    found->pictures = buildings::WriteBuildingPictures(set, buildings::BuildingsWithCards(set), *input.survey, *input.pixels, report_folder);
   }
   page.buildings = found;
   page.background = CopyMapBackground(input.project_folder / "products", report_folder);
@@ -125,7 +126,7 @@ void WriteReport(const EvaluateInput& input, const Metrics& metrics, const Repor
   base::WriteFileAtomically(report_folder / "index.html", BuildReportPage(page));
   if (!brightness.Empty()) base::WriteFileAtomically(report_folder / "brightness.json", BrightnessJson(brightness));
   RemoveStalePictures(report_folder, page, found);
-  base::WriteFileAtomically(report_folder / "metrics.json", MetricsJson(metrics));
+  base::WriteFileAtomically(report_folder / "metrics.json", metrics::MetricsJson(metrics));
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

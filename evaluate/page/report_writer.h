@@ -6,12 +6,12 @@
 #include "evaluate/buildings/buildings_report.h"
 #include "evaluate/evaluate_input.h"
 #include "evaluate/metrics/metrics.h"
+#include "evaluate/page/brightness_report.h"
 #include "evaluate/page/report_page.h"
 #include "evaluate/page/written_pictures.h"
-#include "evaluate/photos/brightness_report.h"
 #include "evaluate/photos/held_out_scorer.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 // Images of the held-out photos. Written as soon as a photo is scored, because together they may not fit in memory.
 class ReportPictures {
@@ -22,7 +22,7 @@ class ReportPictures {
   // Whether Write needs ScoredPhoto::normal of this photo.
   bool ShowsNormal(int photo) const;
   // Call for every scored photo in order, also those that are not shown. Throws base::InputError when a file cannot be written.
-  void Write(const ScoredPhoto& scored);
+  void Write(const photos::ScoredPhoto& scored);
 
   // What was written so far, to save the list and to go on from a saved one.
   WrittenPictures& written() { return written_; }
@@ -30,7 +30,7 @@ class ReportPictures {
   BrightnessReport Brightness() const;  // with the views so far
 
  private:
-  void WriteView(const ScoredPhoto& scored, size_t view);
+  void WriteView(const photos::ScoredPhoto& scored, size_t view);
 
   const EvaluateInput& input_;
   std::vector<int> pictured_, contrasted_, with_mesh_;
@@ -40,7 +40,7 @@ class ReportPictures {
 
 // Writes all other files, pictures of the buildings included (null: none were searched), but those of marks; metrics.json last, so that it exists
 // only when the evaluation is complete. Throws base::InputError when a file cannot be written.
-void WriteReport(const EvaluateInput& input, const Metrics& metrics, const ReportPictures& pictures, std::vector<MarkPicture> marks,
-                 BuildingsReport* found);
+void WriteReport(const EvaluateInput& input, const metrics::Metrics& metrics, const ReportPictures& pictures, std::vector<control::MarkPicture> marks,
+                 buildings::BuildingsReport* found);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

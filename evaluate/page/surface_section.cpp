@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/page/html.h"
 #include "evaluate/page/page_parts.h"
 #include "evaluate/page/report_page.h"
+#include "evaluate/surface/surface_scores.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -15,59 +15,59 @@ constexpr const char* kDash = "\xE2\x80\x93";
 constexpr double kClassTau = 2.0;  // ground sampling distances, in the table by class
 
 std::string ShareCell(double share) {
-  return page::NumberCell(share, page::FormatPercent(share));
+  return NumberCell(share, FormatPercent(share));
 }
 
 std::string DecibelCell(double value_db) {
-  return page::NumberCell(value_db, page::FormatFixed(value_db, 2, "dB"));
+  return NumberCell(value_db, FormatFixed(value_db, 2, "dB"));
 }
 
 std::string CountOrDash(int64_t count) {
-  return count < 0 ? kDash : page::FormatInteger(count);
+  return count < 0 ? kDash : FormatInteger(count);
 }
 
 std::string Centimetres(double metres) {
-  return page::FormatFixed(100.0 * metres, 1, "cm");
+  return FormatFixed(100.0 * metres, 1, "cm");
 }
 
 // Nothing when that distance was not measured.
-const SurfaceFScore* FindTau(const SurfaceAgreement& agreement, double gsd_count) {
+const surface::SurfaceFScore* FindTau(const surface::SurfaceAgreement& agreement, double gsd_count) {
   const std::string name = fmt::format("{:.0f} GSD", gsd_count);
   const auto found =
-      std::find_if(agreement.f_scores.begin(), agreement.f_scores.end(), [&](const SurfaceFScore& score) { return score.tau == name; });
+      std::find_if(agreement.f_scores.begin(), agreement.f_scores.end(), [&](const surface::SurfaceFScore& score) { return score.tau == name; });
   return found == agreement.f_scores.end() ? nullptr : &*found;
 }
 
-std::string MadeFacts(const SurfaceScores& scores) {
-  const SurfaceRecord& record = scores.record;
+std::string MadeFacts(const surface::SurfaceScores& scores) {
+  const surface::SurfaceRecord& record = scores.record;
   std::string html = "<dl class=\"card facts small\">";
   const auto fact = [&](const char* name, const std::string& value) { html += Fact(name, value); };
   fact("Triangles", CountOrDash(record.triangles));
-  if (record.points >= 0) fact("Points of the cloud", page::FormatInteger(record.points));
-  if (std::isfinite(record.area_m2)) fact("Area", page::FormatInteger(std::llround(record.area_m2)) + " m\xC2\xB2");
-  if (std::isfinite(record.filled_m2)) fact("Closed holes", page::FormatFixed(record.filled_m2, 0, "m\xC2\xB2"));
+  if (record.points >= 0) fact("Points of the cloud", FormatInteger(record.points));
+  if (std::isfinite(record.area_m2)) fact("Area", FormatInteger(std::llround(record.area_m2)) + " m\xC2\xB2");
+  if (std::isfinite(record.filled_m2)) fact("Closed holes", FormatFixed(record.filled_m2, 0, "m\xC2\xB2"));
   if (std::isfinite(record.voxel_m)) fact("Cells in which depths were fused", Centimetres(record.voxel_m));
   if (record.photos >= 0) {
-    fact("Views", fmt::format("{} of photos, {} others", page::FormatInteger(record.photos), CountOrDash(record.virtual_views)));
+    fact("Views", fmt::format("{} of photos, {} others", FormatInteger(record.photos), CountOrDash(record.virtual_views)));
   }
   if (record.edges >= 0) {
-    fact("Edges", fmt::format("{}, of them {} at borders and {} with more than two triangles", page::FormatInteger(record.edges),
+    fact("Edges", fmt::format("{}, of them {} at borders and {} with more than two triangles", FormatInteger(record.edges),
                               CountOrDash(record.boundary_edges), CountOrDash(record.non_manifold_edges)));
   }
   if (std::isfinite(record.seconds)) fact("Time", ShownDuration(record.seconds));
   return html + "</dl>";
 }
 
-std::string FileTable(const SurfaceRecord& record) {
+std::string FileTable(const surface::SurfaceRecord& record) {
   if (record.files.empty()) return "";
   std::string html =
       "<div class=\"block\"><h3>What was made</h3><div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>File</th><th>Content</th>"
       "<th>Format</th><th>Coordinates</th><th>Heights above</th><th class=\"num\">Size</th><th>Detail</th></tr></thead><tbody>";
-  for (const SurfaceFile& file : record.files) {
-    const std::string name = page::EscapeHtml(file.file);
+  for (const surface::SurfaceFile& file : record.files) {
+    const std::string name = EscapeHtml(file.file);
     html += fmt::format("<tr><td><a href=\"../surface/{0}\">{0}</a></td>", name);
-    for (const std::string* text : {&file.content, &file.format, &file.crs, &file.vertical}) html += page::TextCell(text->empty() ? kDash : *text);
-    html += page::NumberCell(static_cast<double>(file.bytes), page::FormatBytes(file.bytes)) + page::TextCell(file.detail) + "</tr>";
+    for (const std::string* text : {&file.content, &file.format, &file.crs, &file.vertical}) html += TextCell(text->empty() ? kDash : *text);
+    html += NumberCell(static_cast<double>(file.bytes), FormatBytes(file.bytes)) + TextCell(file.detail) + "</tr>";
   }
   return html + "</tbody></table></div></div>\n";
 }
@@ -77,8 +77,7 @@ std::string MeshCards(const ReportInput& input) {
   for (size_t i = 0; i < input.images.size(); ++i) {
     const PhotoImages& images = input.images[i];
     if (images.mesh.empty()) continue;
-    html +=
-        "<article class=\"card photo\"><header><h3>" + page::EscapeHtml(input.metrics->photos[i].name) + "</h3></header><div class=\"pics three\">";
+    html += "<article class=\"card photo\"><header><h3>" + EscapeHtml(input.metrics->photos[i].name) + "</h3></header><div class=\"pics three\">";
     html += Picture("beside-photo-pic", images.photo, images.width, images.height, "Photo");
     html += Picture("beside-field-pic", images.render, images.width, images.height, "Field");
     html += Picture("beside-mesh-pic", images.mesh, images.width, images.height, "Mesh");
@@ -88,7 +87,7 @@ std::string MeshCards(const ReportInput& input) {
 }
 
 // Pictures of the mesh and the field, whole and by class.
-std::string PictureTable(const SurfaceScores& scores) {
+std::string PictureTable(const surface::SurfaceScores& scores) {
   if (scores.pixels == 0) return "";
   std::string html =
       "<div class=\"block\"><h3>Mesh beside the field in held-out photos</h3><p class=\"lead\">PSNR over the covered pixels. Where the mesh has a "
@@ -96,23 +95,23 @@ std::string PictureTable(const SurfaceScores& scores) {
       "photos.</p><div class=\"card scroll\"><table><thead><tr><th>Pixels</th><th class=\"num\">Mesh</th><th class=\"num\">Field</th>"
       "<th class=\"num\">Difference</th><th class=\"num\">Pixels without mesh</th></tr></thead><tbody>";
   const auto row = [&](const char* name, double mesh_db, double field_db, double missing_share) {
-    html += "<tr>" + page::TextCell(name) + DecibelCell(mesh_db) + DecibelCell(field_db) + DecibelCell(mesh_db - field_db) +
-            ShareCell(missing_share) + "</tr>";
+    html +=
+        "<tr>" + TextCell(name) + DecibelCell(mesh_db) + DecibelCell(field_db) + DecibelCell(mesh_db - field_db) + ShareCell(missing_share) + "</tr>";
   };
   row("all covered pixels", scores.psnr, scores.psnr_field, scores.missing_share);
   row("those with mesh", scores.psnr_where_mesh, scores.psnr_field_where_mesh, 0.0);
-  for (const SurfaceClassScore& score : scores.classes) {
+  for (const surface::SurfaceClassScore& score : scores.classes) {
     if (score.pixels == 0) continue;
     row(score.name.c_str(), score.psnr_db, score.psnr_field_db, static_cast<double>(score.missing_pixels) / static_cast<double>(score.pixels));
   }
   return html + "</tbody></table></div></div>\n";
 }
 
-std::string ScoreCells(const SurfaceFScore& score) {
+std::string ScoreCells(const surface::SurfaceFScore& score) {
   return ShareCell(score.precision) + ShareCell(score.recall) + ShareCell(score.f);
 }
 
-std::string DistanceTables(const SurfaceScores& scores) {
+std::string DistanceTables(const surface::SurfaceScores& scores) {
   if (scores.agreement.f_scores.empty()) return "";
   constexpr const char* kColumns = "<th class=\"num\">Precision</th><th class=\"num\">Recall</th><th class=\"num\">F-score</th>";
   std::string html =
@@ -121,8 +120,8 @@ std::string DistanceTables(const SurfaceScores& scores) {
       "surface counts that at least two training photos see. An error of the geo-reference counts too.</p><div class=\"card scroll\"><table>"
       "<thead><tr><th>Distance</th><th class=\"num\">In metres</th>";
   html += std::string(kColumns) + "</tr></thead><tbody>";
-  for (const SurfaceFScore& score : scores.agreement.f_scores) {
-    html += "<tr>" + page::TextCell(score.tau) + page::NumberCell(score.tau_m, page::FormatFixed(score.tau_m, 3, "m")) + ScoreCells(score) + "</tr>";
+  for (const surface::SurfaceFScore& score : scores.agreement.f_scores) {
+    html += "<tr>" + TextCell(score.tau) + NumberCell(score.tau_m, FormatFixed(score.tau_m, 3, "m")) + ScoreCells(score) + "</tr>";
   }
   html += fmt::format(
       "</tbody></table></div><p class=\"note\">Median distance from the mesh to the true surface {}, from the true surface to the mesh {}.",
@@ -131,23 +130,23 @@ std::string DistanceTables(const SurfaceScores& scores) {
     html += fmt::format(
         " On flat roofs, {} of the mesh is within 2 GSD of the height of the deck, apart from what is within 1 m of an edge or of something that "
         "stands there.",
-        page::FormatPercent(scores.decks_within_2_gsd, 2));
+        FormatPercent(scores.decks_within_2_gsd, 2));
   }
   html += "</p>";
   const bool by_class = std::any_of(scores.classes.begin(), scores.classes.end(),
-                                    [](const SurfaceClassScore& score) { return FindTau(score.agreement, kClassTau) != nullptr; });
+                                    [](const surface::SurfaceClassScore& score) { return FindTau(score.agreement, kClassTau) != nullptr; });
   html += "</div>\n";
   if (!by_class) return html;
   html += fmt::format(
       "<div class=\"block\"><h3>By class, at {:.0f} GSD</h3><div class=\"card scroll\"><table><thead><tr><th>Surface</th>{}<th class=\"num\">"
       "Mesh to truth, median</th><th class=\"num\">Truth to mesh, median</th></tr></thead><tbody>",
       kClassTau, kColumns);
-  for (const SurfaceClassScore& score : scores.classes) {
-    const SurfaceFScore* at_tau = FindTau(score.agreement, kClassTau);
+  for (const surface::SurfaceClassScore& score : scores.classes) {
+    const surface::SurfaceFScore* at_tau = FindTau(score.agreement, kClassTau);
     if (at_tau == nullptr) continue;
     const double accuracy_m = score.agreement.accuracy_median_m, completeness_m = score.agreement.completeness_median_m;
-    html += "<tr>" + page::TextCell(score.name) + ScoreCells(*at_tau) + page::NumberCell(accuracy_m, Centimetres(accuracy_m)) +
-            page::NumberCell(completeness_m, Centimetres(completeness_m)) + "</tr>";
+    html += "<tr>" + TextCell(score.name) + ScoreCells(*at_tau) + NumberCell(accuracy_m, Centimetres(accuracy_m)) +
+            NumberCell(completeness_m, Centimetres(completeness_m)) + "</tr>";
   }
   return html + "</tbody></table></div></div>\n";
 }
@@ -156,11 +155,11 @@ std::string DistanceTables(const SurfaceScores& scores) {
 
 std::string SurfaceSection(const ReportInput& input) {
   if (!input.metrics->surface) return "";
-  const SurfaceScores& scores = *input.metrics->surface;
+  const surface::SurfaceScores& scores = *input.metrics->surface;
   std::string html = "<section id=\"surface\"><div class=\"heading\"><h2>Surface</h2><div class=\"chips\">";
-  if (std::isfinite(scores.psnr)) html += Chip("PSNR of the mesh", page::FormatFixed(scores.psnr, 2, "dB"), "main");
-  if (const SurfaceFScore* at_tau = FindTau(scores.agreement, kClassTau)) {
-    html += Chip(fmt::format("F-score at {:.0f} GSD", kClassTau), page::FormatPercent(at_tau->f));
+  if (std::isfinite(scores.psnr)) html += Chip("PSNR of the mesh", FormatFixed(scores.psnr, 2, "dB"), "main");
+  if (const surface::SurfaceFScore* at_tau = FindTau(scores.agreement, kClassTau)) {
+    html += Chip(fmt::format("F-score at {:.0f} GSD", kClassTau), FormatPercent(at_tau->f));
   }
   html +=
       "</div></div><p class=\"lead\">A textured mesh was made from the field, and from it the files below. The mesh is compared with photos that "
@@ -168,4 +167,4 @@ std::string SurfaceSection(const ReportInput& input) {
   return html + MadeFacts(scores) + FileTable(scores.record) + MeshCards(input) + PictureTable(scores) + DistanceTables(scores) + "</section>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -3,22 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/page/html.h"
 #include "evaluate/control/tag_positions.h"
 #include "evaluate/page/geo_section.h"
 #include "evaluate/page/page_parts.h"
 #include "evaluate/page/report_page.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
 std::string StatusCell(const scene::FieldTraining* log, const partition::Block* block) {
   if (block != nullptr && block->empty)
-    return fmt::format("<td class=\"status\"><span class=\"state idle\">empty</span><small>{}</small></td>", page::EscapeHtml(block->empty_reason));
+    return fmt::format("<td class=\"status\"><span class=\"state idle\">empty</span><small>{}</small></td>", EscapeHtml(block->empty_reason));
   if (log == nullptr) return "<td class=\"status\"><span class=\"state idle\">no record</span></td>";
-  if (!log->ok)
-    return fmt::format("<td class=\"status\"><span class=\"state bad\">failed</span><small>{}</small></td>", page::EscapeHtml(log->reason));
+  if (!log->ok) return fmt::format("<td class=\"status\"><span class=\"state bad\">failed</span><small>{}</small></td>", EscapeHtml(log->reason));
   if (log->shows_context) {
     return "<td class=\"status\"><span class=\"state warn\">context</span><small>worse than the context, which is shown in its place</small></td>";
   }
@@ -28,7 +26,7 @@ std::string StatusCell(const scene::FieldTraining* log, const partition::Block* 
   }
   if (log->dropped_steps > 0) {
     return fmt::format("<td class=\"status\"><span class=\"state warn\">done</span><small>{} steps left out: not finite</small></td>",
-                       page::FormatInteger(log->dropped_steps));
+                       FormatInteger(log->dropped_steps));
   }
   return "<td class=\"status\"><span class=\"state good\">done</span></td>";
 }
@@ -37,10 +35,9 @@ std::string TrainingCells(const scene::FieldTraining* log) {
   if (log == nullptr)
     return "<td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td>"
            "<td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td><td class=\"num\">\xE2\x80\x93</td>";
-  const auto number = [](int64_t value) { return page::NumberCell(static_cast<double>(value), page::FormatLarge(static_cast<double>(value))); };
-  return page::NumberCell(log->psnr_db, page::FormatFixed(log->psnr_db, 2, "dB")) +
-         page::NumberCell(static_cast<double>(log->steps), page::FormatInteger(log->steps)) +
-         page::NumberCell(log->seconds, ShownDuration(log->seconds)) + number(log->rays) + number(log->samples) + number(log->parameters);
+  const auto number = [](int64_t value) { return NumberCell(static_cast<double>(value), FormatLarge(static_cast<double>(value))); };
+  return NumberCell(log->psnr_db, FormatFixed(log->psnr_db, 2, "dB")) + NumberCell(static_cast<double>(log->steps), FormatInteger(log->steps)) +
+         NumberCell(log->seconds, ShownDuration(log->seconds)) + number(log->rays) + number(log->samples) + number(log->parameters);
 }
 
 }  // namespace
@@ -61,20 +58,20 @@ std::string BlockTable(const ReportInput& input) {
     html += "</tr>";
   }
   for (const partition::Block& block : input.blocks->blocks) {
-    const BlockScore* score = input.metrics->FindBlock(block.name);
+    const metrics::BlockScore* score = input.metrics->FindBlock(block.name);
     const double psnr_db = score == nullptr ? kNotMeasured : score->psnr_db;
     const double pixels = score == nullptr ? kNotMeasured : static_cast<double>(score->pixels);
     const scene::FieldTraining* log = input.training->Find(block.name);
     const Eigen::Vector3d size = block.max_enu - block.min_enu;
     const double gsd_m = input.survey->georeferenced ? block.gsd_m : kNotMeasured;
-    html += fmt::format("<tr id=\"block-{0}\"><td><b>{0}</b></td>", page::EscapeHtml(block.name)) + StatusCell(log, &block);
-    html += page::NumberCell(psnr_db, page::FormatFixed(psnr_db, 2, "dB")) + page::NumberCell(pixels, page::FormatLarge(pixels)) + TrainingCells(log);
-    html += page::NumberCell(size.x() * size.y(), fmt::format("{:.0f} \xC3\x97 {:.0f}\xE2\x80\xAF{}", size.x(), size.y(), length_unit));
-    html += page::NumberCell(block.min_enu.z(), fmt::format("{} \xE2\x80\xA6 {}", page::FormatFixed(block.min_enu.z(), 1),
-                                                            page::FormatFixed(block.max_enu.z(), 1, length_unit)));
-    html += page::NumberCell(block.altitude_agl_m, page::FormatFixed(block.altitude_agl_m, 1, length_unit));
-    html += page::NumberCell(gsd_m, page::FormatFixed(gsd_m * 100.0, 1, "cm"));
-    html += page::NumberCell(static_cast<double>(block.photos.size()), page::FormatInteger(static_cast<int64_t>(block.photos.size())));
+    html += fmt::format("<tr id=\"block-{0}\"><td><b>{0}</b></td>", EscapeHtml(block.name)) + StatusCell(log, &block);
+    html += NumberCell(psnr_db, FormatFixed(psnr_db, 2, "dB")) + NumberCell(pixels, FormatLarge(pixels)) + TrainingCells(log);
+    html += NumberCell(size.x() * size.y(), fmt::format("{:.0f} \xC3\x97 {:.0f}\xE2\x80\xAF{}", size.x(), size.y(), length_unit));
+    html += NumberCell(block.min_enu.z(),
+                       fmt::format("{} \xE2\x80\xA6 {}", FormatFixed(block.min_enu.z(), 1), FormatFixed(block.max_enu.z(), 1, length_unit)));
+    html += NumberCell(block.altitude_agl_m, FormatFixed(block.altitude_agl_m, 1, length_unit));
+    html += NumberCell(gsd_m, FormatFixed(gsd_m * 100.0, 1, "cm"));
+    html += NumberCell(static_cast<double>(block.photos.size()), FormatInteger(static_cast<int64_t>(block.photos.size())));
     html += "</tr>";
   }
   return html + "</tbody></table></div>\n";
@@ -82,7 +79,7 @@ std::string BlockTable(const ReportInput& input) {
 
 std::string ResidualTable(const survey::Survey& survey) {
   if (!survey.georeferenced) return "";
-  const std::vector<std::optional<TagPosition>> tags = TagPositions(survey);
+  const std::vector<std::optional<control::TagPosition>> tags = control::TagPositions(survey);
   std::vector<size_t> tagged;
   for (size_t i = 0; i < tags.size(); ++i) {
     if (tags[i]) tagged.push_back(i);
@@ -97,16 +94,15 @@ std::string ResidualTable(const survey::Survey& survey) {
   const auto row = [&](size_t i) {
     const survey::Photo& photo = survey.photos[i];
     const double bar = worst_m > 0.0 ? std::max(residual_of(i), 0.0) / worst_m : 0.0;
-    std::string html = "<tr>" + page::TextCell(photo.name);
+    std::string html = "<tr>" + TextCell(photo.name);
     html += fmt::format("<td class=\"num bar\" data-v=\"{}\"><i style=\"--share:{:.3f}\"></i>{}</td>", residual_of(i), bar,
-                        page::FormatFixed(photo.gps_residual_m, 2, "m"));
-    for (const double along_m : tags[i]->residual) html += page::NumberCell(along_m, page::FormatFixed(along_m, 2));
+                        FormatFixed(photo.gps_residual_m, 2, "m"));
+    for (const double along_m : tags[i]->residual) html += NumberCell(along_m, FormatFixed(along_m, 2));
     html += fmt::format("<td><span class=\"state {}</span></td>", photo.gps_inlier ? "good\">used" : "bad\">not used");
-    html += page::NumberCell(photo.agl_m, page::FormatFixed(photo.agl_m, 1, "m"));
+    html += NumberCell(photo.agl_m, FormatFixed(photo.agl_m, 1, "m"));
     const double relative_m = photo.relative_altitude_m.value_or(kNotMeasured);
-    html +=
-        page::NumberCell(relative_m, page::FormatFixed(relative_m, 1, "m")) + page::NumberCell(photo.flight + 1, std::to_string(photo.flight + 1));
-    return html + page::TextCell(photo.is_test ? "testing" : "training") + "</tr>";
+    html += NumberCell(relative_m, FormatFixed(relative_m, 1, "m")) + NumberCell(photo.flight + 1, std::to_string(photo.flight + 1));
+    return html + TextCell(photo.is_test ? "testing" : "training") + "</tr>";
   };
   const std::string head =
       "<thead><tr><th>Photo</th><th class=\"num\">Residual</th><th class=\"num\">East</th><th class=\"num\">North</th><th class=\"num\">Up</th>"
@@ -118,7 +114,7 @@ std::string ResidualTable(const survey::Survey& survey) {
   html += "</tbody></table></div>";
   if (tagged.size() > kShown) {
     html += fmt::format("<details><summary>The other {} photos</summary><div class=\"card scroll\"><table class=\"sortable\">{}<tbody>",
-                        page::FormatInteger(static_cast<int64_t>(tagged.size() - kShown)), head);
+                        FormatInteger(static_cast<int64_t>(tagged.size() - kShown)), head);
     for (size_t k = kShown; k < tagged.size(); ++k) html += row(tagged[k]);
     html += "</tbody></table></div></details>";
   }
@@ -130,4 +126,4 @@ std::string ResidualTable(const survey::Survey& survey) {
   return html + "</div>\n";
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -38,4 +38,4 @@ TimeAxis AxisOfNames(size_t n_photos) {
   return axis;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

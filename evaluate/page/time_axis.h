@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 struct TimeAxis {
   std::vector<double> x;  // one per photo
@@ -17,4 +17,4 @@ TimeAxis AxisOfTimes(const std::vector<double>& times_s);
 // 1, 2, 3 ... for photos whose times are not known.
 TimeAxis AxisOfNames(size_t n_photos);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

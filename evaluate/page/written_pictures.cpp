@@ -4,7 +4,7 @@
 #include <string>
 #include <system_error>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -55,4 +55,4 @@ bool WrittenPictures::Exist(const std::filesystem::path& report_folder) const {
          std::all_of(views.begin(), views.end(), [&](const BrightnessView& one) { return all(one.photo, one.recorded, one.normal); });
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

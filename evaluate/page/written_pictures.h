@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "core/base/packed_bytes.h"
+#include "evaluate/page/brightness_report.h"
 #include "evaluate/page/report_page.h"
-#include "evaluate/photos/brightness_report.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 struct WrittenPictures {
   std::vector<PhotoImages> images;    // one per scored photo, empty where it is not shown
@@ -22,4 +22,4 @@ struct WrittenPictures {
   bool Exist(const std::filesystem::path& report_folder) const;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -5,7 +5,7 @@
 
 #include "evaluate/photos/pixel_groups.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 constexpr int kFitSteps = 12;
@@ -79,4 +79,4 @@ HalfScores ScoreHalves(const image::ImageF& render, const image::ImageF& photo, 
   return scores;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

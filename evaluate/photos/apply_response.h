@@ -11,7 +11,7 @@
 #include "core/metrics/psnr.h"
 #include "core/scene/scene.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 // Gains of a photo (natural logarithm, linear light; red, green, blue) and the vignetting of its camera.
 struct PhotoResponse {
@@ -25,11 +25,11 @@ void ApplyResponse(const camera::Camera& camera, const PhotoResponse& recording,
 // Tells how much of the error is brightness: three gains are fitted on the left half of a photo and scored on the right half (the protocol of
 // Martin-Brualla et al. 2021), so that no pixel is both fitted and scored.
 struct HalfScores {
-  metrics::SquaredError right;                         // as recorded
-  metrics::SquaredError right_fitted;                  // with the gains fitted on the left
+  skyquilt::metrics::SquaredError right;               // as recorded
+  skyquilt::metrics::SquaredError right_fitted;        // with the gains fitted on the left
   std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};  // fitted, in addition to the rendering's; 0 when the left half has no usable pixels
 };
 // render and photo: RGB of the same size, display values at the photo's brightness. scored: one channel, 0 = do not use.
 HalfScores ScoreHalves(const image::ImageF& render, const image::ImageF& photo, const image::Image8& scored);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

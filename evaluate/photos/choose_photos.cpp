@@ -1,6 +1,6 @@
 #include "evaluate/photos/choose_photos.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 std::vector<int> HeldOutPhotos(const survey::Survey& survey) {
   std::vector<int> held_out;
@@ -23,4 +23,4 @@ std::vector<int> SelectEvenly(const std::vector<int>& photos, int count) {
   return chosen;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -6,7 +6,7 @@
 
 #include "core/survey/survey.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 // Indices into Survey::photos of the held-out photos, which were not trained on.
 std::vector<int> HeldOutPhotos(const survey::Survey& survey);
@@ -15,4 +15,4 @@ std::vector<size_t> EvenlySpacedIndices(size_t n, int count);
 // `count` of the photos, chosen by EvenlySpacedIndices.
 std::vector<int> SelectEvenly(const std::vector<int>& photos, int count);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -8,7 +8,7 @@
 #include "core/base/errors.h"
 #include "core/camera/photo_visibility.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 std::optional<Eigen::Vector3d> SurfacePoint(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu, double depth_m,
                                             HeightRange range) {
@@ -81,4 +81,4 @@ int TrainingViews::Count(const Eigen::Vector3d& x_in_enu, std::span<const int> o
   return count;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

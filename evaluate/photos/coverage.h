@@ -11,7 +11,7 @@
 #include "core/camera/camera.h"
 #include "core/geo/transform.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 // Lowest and highest z of the scene's surface, metres; low <= high.
 struct HeightRange {
@@ -51,4 +51,4 @@ class TrainingViews {
   std::vector<Cone> cones_;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -8,7 +8,7 @@
 
 #include "evaluate/photos/choose_photos.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 constexpr int kPerSide = 256;          // sampled points along each side of a photo
@@ -90,4 +90,4 @@ ExposureSeams MeasureExposureSeams(const scene::Scene& scene, const std::vector<
   return {MedianOfMeasured(border), MedianOfMeasured(control), static_cast<int>(border.size())};
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -4,10 +4,10 @@
 
 #include "core/base/thread_pool.h"
 #include "core/scene/scene.h"
-#include "evaluate/metrics/metrics.h"
+#include "evaluate/measured.h"
 #include "evaluate/photos/coverage.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 struct ExposureSeams {
   // Medians over photos of |mean outside - mean inside| in display values (1 = white), colours averaged; NaN without photos.
@@ -20,4 +20,4 @@ struct ExposureSeams {
 constexpr int kMaxSeamPhotos = 96;
 ExposureSeams MeasureExposureSeams(const scene::Scene& scene, const std::vector<TrainingView>& views, base::ThreadPool& threads);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -15,7 +15,7 @@
 #include "core/linear/linear.h"
 #include "core/survey/surface_class.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -137,4 +137,4 @@ FlatRoofScore FlatRoofPoints::Result() const {
   return score;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

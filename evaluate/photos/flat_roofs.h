@@ -9,7 +9,7 @@
 #include "core/base/packed_bytes.h"
 #include "evaluate/photos/photo_scorer.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 inline constexpr double kRoofRim_m = 1.0;         // left out along the walls, where parapets stand
 inline constexpr double kDeckTolerance_m = 0.2;   // true points farther than this from the deck's true height are on something that stands there
@@ -62,4 +62,4 @@ class FlatRoofPoints {
   std::vector<std::vector<RoofPoint>> points_;  // one list per area
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

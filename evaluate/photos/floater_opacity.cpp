@@ -4,7 +4,7 @@
 
 #include "core/base/errors.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 namespace {
 
@@ -60,4 +60,4 @@ FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const HeldOutPho
   return total;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -11,7 +11,7 @@
 #include "core/scene/scene.h"
 #include "evaluate/photos/photo_scorer.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 // Free space ends this far in front of the true surface, metres, so that a slightly blurred surface does not count as a floater.
 inline constexpr double kFloaterClearance_m = 1.0;
@@ -34,4 +34,4 @@ struct FloaterOpacity {
 // Measures a grid of pixels of one photo that are scored and have a true depth. findings: result of ScorePhoto for this task.
 FloaterOpacity MeasureFloaterOpacity(const scene::Scene& scene, const HeldOutPhoto& task, const PhotoResult& findings, base::ThreadPool& threads);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -9,7 +9,7 @@
 #include "core/base/log.h"
 #include "evaluate/photos/load_held_out_photo.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 namespace {
 
@@ -42,7 +42,7 @@ image::ImageF NormalsOf(std::span<const render::RayColor> rendered, const image:
   return normals;
 }
 
-double LpipsOf(metrics::Lpips& network, const HeldOutPhoto& task, const image::Image8& render) {
+double LpipsOf(skyquilt::metrics::Lpips& network, const HeldOutPhoto& task, const image::Image8& render) {
   const image::Image8 used = task.UsedPixels();
   return network.Distance(image::ToImageF(render), image::ToImageF(task.photo), used.Empty() ? nullptr : &used);
 }
@@ -121,4 +121,4 @@ ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& 
   return scored;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

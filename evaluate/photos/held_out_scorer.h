@@ -13,7 +13,7 @@
 #include "evaluate/photos/photo_response.h"
 #include "evaluate/photos/photo_scorer.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 struct ScoredPhoto {
   HeldOutPhoto task;
@@ -52,7 +52,7 @@ class HeldOutScorer {
   const SceneArea area_;
   const std::vector<TrainingView> training_;
   const TrainingViews views_;
-  std::optional<metrics::Lpips> lpips_;
+  std::optional<skyquilt::metrics::Lpips> lpips_;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

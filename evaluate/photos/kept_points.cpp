@@ -14,7 +14,7 @@
 #include "evaluate/photos/choose_photos.h"
 #include "evaluate/photos/pixel_groups.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 constexpr double kFarGsd = 10.0;
@@ -131,4 +131,4 @@ KeptPointErrors MeasureKeptPoints(const scene::Scene& scene, const survey::Surve
   return CompareKeptRays(kept, rendered, survey.georeferenced);
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,9 +13,9 @@
 #include "core/render/ray.h"
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
-#include "evaluate/metrics/metrics.h"
+#include "evaluate/measured.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 // Rays through one point, from photos spread over those that observed it; held-out ones first.
 inline constexpr int kRaysPerKeptPoint = 4;
@@ -32,6 +33,17 @@ struct KeptRay {
 // `most`, points are chosen by a hash of their index. widths: of each photo at the size of training, pixels, for the width of the rays.
 std::vector<KeptRay> KeptRays(const survey::Survey& survey, std::span<const int> widths, std::span<const geo::BlockBox> boxes, size_t most);
 
+// Depth of the scene along rays to the kept points: rendered distance minus distance of the point,
+// positive behind it. Median, median of the absolute values, and NMAD (1.4826 times the median distance from the median), in metres and in units of
+// the photo's ground sampling distance there.
+struct KeptPointErrors {
+  int64_t points = 0;
+  int64_t rays = 0;  // 0: nothing was measured
+  double median_m = kNotMeasured, median_abs_m = kNotMeasured, nmad_m = kNotMeasured;
+  double median_gsd = kNotMeasured, median_abs_gsd = kNotMeasured, nmad_gsd = kNotMeasured;
+  double share_beyond_10_gsd = kNotMeasured;  // of the rays, those that never become half opaque included
+};
+
 // rendered: one per ray. A ray that never becomes half opaque has an infinite error. Metres are left unmeasured in surveys without a place on Earth,
 // whose unit is unknown.
 KeptPointErrors CompareKeptRays(std::span<const KeptRay> rays, std::span<const render::RayColor> rendered, bool georeferenced);
@@ -40,4 +52,4 @@ KeptPointErrors CompareKeptRays(std::span<const KeptRay> rays, std::span<const r
 KeptPointErrors MeasureKeptPoints(const scene::Scene& scene, const survey::Survey& survey, const image::PixelCache& pixels,
                                   std::span<const geo::BlockBox> boxes, base::ThreadPool& threads);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

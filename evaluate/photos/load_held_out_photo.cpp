@@ -5,7 +5,7 @@
 
 #include "core/image/normal_image.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 namespace {
 
@@ -63,4 +63,4 @@ HeldOutPhoto LoadHeldOutPhoto(const survey::Survey& survey, const image::PixelCa
   return task;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

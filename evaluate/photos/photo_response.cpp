@@ -7,7 +7,7 @@
 #include "core/metrics/psnr.h"
 #include "core/metrics/ssim.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 image::ImageF AsImage(std::span<const render::RayColor> colors, int width, int height) {
@@ -47,7 +47,7 @@ PhotoResponse PredictedResponse(const brightness::Response& response, size_t pho
 double PsnrWithResponse(const HeldOutPhoto& task, const PhotoResponse& recording, std::vector<render::RayColor> colors, const image::Image8& scored,
                         base::ThreadPool& threads) {
   ApplyResponse(task.camera, recording, colors, threads);
-  return metrics::Psnr(AsImage(colors, task.photo.width, task.photo.height), image::ToImageF(task.photo), &scored);
+  return skyquilt::metrics::Psnr(AsImage(colors, task.photo.width, task.photo.height), image::ToImageF(task.photo), &scored);
 }
 
 NormalScore ScoreNormal(const std::filesystem::path& true_photo, std::span<const render::RayColor> normal, const image::Image8& scored) {
@@ -61,7 +61,7 @@ NormalScore ScoreNormal(const std::filesystem::path& true_photo, std::span<const
     truth = image::Resize(truth, scored.width, height);
   }
   const image::ImageF render = AsImage(normal, scored.width, scored.height), photo = image::ToImageF(truth);
-  return {metrics::Psnr(render, photo, &scored), metrics::Ssim(render, photo, &scored)};
+  return {skyquilt::metrics::Psnr(render, photo, &scored), skyquilt::metrics::Ssim(render, photo, &scored)};
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

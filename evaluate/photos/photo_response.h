@@ -9,7 +9,7 @@
 #include "evaluate/photos/apply_response.h"
 #include "evaluate/photos/photo_scorer.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 // Factor on linear light: the exposure of the photo's tags divided by the survey's reference exposure. 1 without tags, if reference_exposure is 0, or
 // if exif_gain is false.
@@ -30,4 +30,4 @@ struct NormalScore {
 // Compares a rendering at normal brightness with a photo taken at normal brightness. Throws base::InputError for a photo that cannot be used.
 NormalScore ScoreNormal(const std::filesystem::path& true_photo, std::span<const render::RayColor> normal, const image::Image8& scored);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -13,15 +13,15 @@
 #include "core/scene/depth_normals.h"
 #include "evaluate/photos/apply_response.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 namespace {
 
 // Sums over the pixels of a photo.
 struct PixelSums {
-  metrics::SquaredError full, covered;
+  skyquilt::metrics::SquaredError full, covered;
   SeamErrors seams;
-  std::vector<metrics::SquaredError> per_block;
+  std::vector<skyquilt::metrics::SquaredError> per_block;
   int64_t used = 0;
 
   PixelSums& operator+=(const PixelSums& other) {
@@ -130,14 +130,14 @@ void AddWholeFrameScores(const HeldOutPhoto& task, const FrameComparison& frame,
   const image::Image8* unmasked = used.Empty() ? nullptr : &used;
   HalfScores halves;
   threads.ParallelFor(3, [&](int64_t which, int) {
-    if (which == 0) score->ssim = metrics::Ssim(frame.render, frame.photo, &frame.scored);
-    if (which == 1) score->ssim_full = metrics::Ssim(frame.render, frame.photo, unmasked);
+    if (which == 0) score->ssim = skyquilt::metrics::Ssim(frame.render, frame.photo, &frame.scored);
+    if (which == 1) score->ssim_full = skyquilt::metrics::Ssim(frame.render, frame.photo, unmasked);
     if (which == 2) halves = ScoreHalves(frame.unclamped, frame.photo, frame.scored);
   });
-  score->flip = metrics::Flip(frame.render, frame.photo, &frame.scored, threads);
-  score->flip_full = metrics::Flip(frame.render, frame.photo, unmasked, threads);
-  score->right_half_db = metrics::PsnrOf(halves.right);
-  score->right_half_fitted_db = metrics::PsnrOf(halves.right_fitted);
+  score->flip = skyquilt::metrics::Flip(frame.render, frame.photo, &frame.scored, threads);
+  score->flip_full = skyquilt::metrics::Flip(frame.render, frame.photo, unmasked, threads);
+  score->right_half_db = skyquilt::metrics::PsnrOf(halves.right);
+  score->right_half_fitted_db = skyquilt::metrics::PsnrOf(halves.right_fitted);
   for (size_t c = 0; c < 3; ++c) score->fitted_stops[c] = static_cast<double>(halves.log_gain[c]) / std::numbers::ln2;
 }
 
@@ -171,15 +171,15 @@ PhotoResult ScorePhoto(const HeldOutPhoto& task, std::span<const render::RayColo
   score.height = height;
   score.used_pixels = sums.used;
   score.covered_pixels = PixelsOf(sums.covered);
-  score.psnr_db = metrics::PsnrOf(sums.covered);
-  score.psnr_full_db = metrics::PsnrOf(sums.full);
+  score.psnr_db = skyquilt::metrics::PsnrOf(sums.covered);
+  score.psnr_full_db = skyquilt::metrics::PsnrOf(sums.full);
   AddWholeFrameScores(task, frame, threads, &score);
   findings.scored = std::move(frame.scored);
   findings.z_depth = std::move(frame.z_depth);
   findings.render = image::ToImage8(frame.render);
   if (!task.true_depth.Empty()) {
     findings.true_depth = ResizeNearest(task.true_depth, width, height);
-    const metrics::DepthErrors errors = metrics::CompareDepth(findings.z_depth, findings.true_depth, &findings.scored);
+    const skyquilt::metrics::DepthErrors errors = skyquilt::metrics::CompareDepth(findings.z_depth, findings.true_depth, &findings.scored);
     score.depth_rmse_m = errors.rmse_m;
     score.depth_median_abs_m = errors.median_abs_m;
   }
@@ -191,4 +191,4 @@ PhotoResult ScorePhoto(const HeldOutPhoto& task, std::span<const render::RayColo
   return findings;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -11,12 +11,12 @@
 #include "core/geo/transform.h"
 #include "core/image/image.h"
 #include "core/scene/scene.h"
-#include "evaluate/metrics/metrics.h"
 #include "evaluate/photos/coverage.h"
+#include "evaluate/photos/photo_score.h"
 #include "evaluate/photos/pixel_groups.h"
 #include "evaluate/photos/seam_errors.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 struct HeldOutPhoto {
   camera::Camera camera;  // at the scored size
@@ -39,10 +39,10 @@ struct SceneArea {
 struct PhotoResult {
   PhotoScore score;  // sizes, pixel counts, PSNR, SSIM, FLIP and depth; the caller fills the rest
   SeamErrors seams;
-  std::vector<metrics::SquaredError> per_block;  // one per box of the area, covered pixels
-  image::Image8 scored;                          // one channel, 1 = unmasked and covered
-  image::Image8 render;                          // the rendering, as shown in the report
-  image::ImageF z_depth;                         // metres along z of the camera, NaN where the render has none
+  std::vector<skyquilt::metrics::SquaredError> per_block;  // one per box of the area, covered pixels
+  image::Image8 scored;                                    // one channel, 1 = unmasked and covered
+  image::Image8 render;                                    // the rendering, as shown in the report
+  image::ImageF z_depth;                                   // metres along z of the camera, NaN where the render has none
   // The true surface at the scored size (nearest pixel), and the normals of z_depth to compare with; empty when unknown.
   image::ImageF true_depth;
   image::ImageF true_normals;
@@ -57,4 +57,4 @@ struct PhotoResult {
 PhotoResult ScorePhoto(const HeldOutPhoto& task, std::span<const render::RayColor> rendered, const TrainingViews& views, const SceneArea& area,
                        base::ThreadPool& threads);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

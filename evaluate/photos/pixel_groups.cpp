@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 namespace {
 
@@ -29,7 +29,7 @@ Zone ZoneAt(const Eigen::Vector3d& x_in_enu, int block, std::span<const geo::Blo
   return InsideGrown(x_in_enu, own, -own.margin_m) ? Zone::kInterior : Zone::kRim;
 }
 
-void AddPixel(const float* a, const float* b, metrics::SquaredError* error) {
+void AddPixel(const float* a, const float* b, skyquilt::metrics::SquaredError* error) {
   for (int channel = 0; channel < 3; ++channel) {
     const double difference = static_cast<double>(a[channel]) - static_cast<double>(b[channel]);
     error->sum += difference * difference;
@@ -37,4 +37,4 @@ void AddPixel(const float* a, const float* b, metrics::SquaredError* error) {
   error->n_values += 3;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -9,7 +9,7 @@
 #include "core/geo/block_box.h"
 #include "core/metrics/psnr.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 enum class Zone : uint8_t {
   kOutside,   // in no block
@@ -24,9 +24,9 @@ int BlockAt(const Eigen::Vector3d& x_in_enu, std::span<const geo::BlockBox> boxe
 Zone ZoneAt(const Eigen::Vector3d& x_in_enu, int block, std::span<const geo::BlockBox> boxes);
 
 // Adds one pixel's RGB difference, display values in [0,1].
-void AddPixel(const float* a, const float* b, metrics::SquaredError* error);
-inline int64_t PixelsOf(const metrics::SquaredError& error) {
+void AddPixel(const float* a, const float* b, skyquilt::metrics::SquaredError* error);
+inline int64_t PixelsOf(const skyquilt::metrics::SquaredError& error) {
   return error.n_values / 3;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -4,7 +4,7 @@
 
 #include "core/base/file.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 constexpr double kErrorSteps = 254.0;
@@ -39,4 +39,4 @@ void WriteScoredPixels(const ScoredPhoto& scored, const std::filesystem::path& f
   image::SavePng(ScoredPixels(scored.task.photo, scored.findings.render, scored.findings.scored), file);
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

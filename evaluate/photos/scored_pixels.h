@@ -13,7 +13,7 @@
 #include "core/image/image.h"
 #include "evaluate/photos/held_out_scorer.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 // photo, render: RGB; scored: one channel of the same size, 0 = not scored.
 image::Image8 ScoredPixels(const image::Image8& photo, const image::Image8& render, const image::Image8& scored);
@@ -24,4 +24,4 @@ std::filesystem::path ScoredPixelsFile(const std::filesystem::path& folder, cons
 // Writes that file. Throws base::InputError.
 void WriteScoredPixels(const ScoredPhoto& scored, const std::filesystem::path& folder);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

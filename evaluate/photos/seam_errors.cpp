@@ -3,23 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
-metrics::SquaredError Sum(const std::array<metrics::SquaredError, kTextureClasses>& classes) {
-  metrics::SquaredError sum;
-  for (const metrics::SquaredError& one : classes) sum += one;
+skyquilt::metrics::SquaredError Sum(const std::array<skyquilt::metrics::SquaredError, kTextureClasses>& classes) {
+  skyquilt::metrics::SquaredError sum;
+  for (const skyquilt::metrics::SquaredError& one : classes) sum += one;
   return sum;
 }
 
 // Both groups over the classes they have in common, the interior weighted like the seams.
 struct Matched {
-  metrics::SquaredError interior, seam;
+  skyquilt::metrics::SquaredError interior, seam;
 
   explicit Matched(const SeamErrors& errors) {
     for (size_t k = 0; k < kTextureClasses; ++k) {
-      const metrics::SquaredError& inside = errors.interior[k];
-      const metrics::SquaredError& at_seam = errors.seam[k];
+      const skyquilt::metrics::SquaredError& inside = errors.interior[k];
+      const skyquilt::metrics::SquaredError& at_seam = errors.seam[k];
       if (inside.n_values == 0 || at_seam.n_values == 0) continue;
       interior.sum += inside.sum / static_cast<double>(inside.n_values) * static_cast<double>(at_seam.n_values);
       interior.n_values += at_seam.n_values;
@@ -49,21 +49,21 @@ SeamErrors& SeamErrors::operator+=(const SeamErrors& other) {
   return *this;
 }
 
-metrics::SquaredError SeamErrors::AllInterior() const {
+skyquilt::metrics::SquaredError SeamErrors::AllInterior() const {
   return Sum(interior);
 }
 
-metrics::SquaredError SeamErrors::AllSeam() const {
+skyquilt::metrics::SquaredError SeamErrors::AllSeam() const {
   return Sum(seam);
 }
 
 double SeamErrors::MatchedInteriorDb() const {
-  return metrics::PsnrOf(Matched(*this).interior);
+  return skyquilt::metrics::PsnrOf(Matched(*this).interior);
 }
 
 double SeamErrors::GapDb() const {
   const Matched matched(*this);
-  return metrics::PsnrOf(matched.interior) - metrics::PsnrOf(matched.seam);
+  return skyquilt::metrics::PsnrOf(matched.interior) - skyquilt::metrics::PsnrOf(matched.seam);
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -8,7 +8,7 @@
 #include "core/image/image.h"
 #include "core/metrics/psnr.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 constexpr int kTextureClasses = 8;
 
@@ -17,11 +17,11 @@ constexpr int kTextureClasses = 8;
 int TextureClass(const image::ImageF& photo, int x, int y);
 
 struct SeamErrors {
-  std::array<metrics::SquaredError, kTextureClasses> interior{}, seam{};
+  std::array<skyquilt::metrics::SquaredError, kTextureClasses> interior{}, seam{};
 
   SeamErrors& operator+=(const SeamErrors& other);
-  metrics::SquaredError AllInterior() const;
-  metrics::SquaredError AllSeam() const;
+  skyquilt::metrics::SquaredError AllInterior() const;
+  skyquilt::metrics::SquaredError AllSeam() const;
   // PSNR of the interior in dB, weighted to have the textures of the seams. Classes missing in one of the groups are left out. NaN when the groups
   // have no class in common.
   double MatchedInteriorDb() const;
@@ -29,4 +29,4 @@ struct SeamErrors {
   double GapDb() const;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -11,7 +11,7 @@
 #include "core/base/order_statistics.h"
 #include "core/survey/surface_class.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 constexpr double kProbeStep_m = 0.5;
@@ -44,7 +44,7 @@ class TruthFromAbove {
   }
   bool IsDeck(const Top& top) const {
     return top.triangle != raytrace::kNoTriangle && truth_.class_id[top.triangle] == static_cast<uint8_t>(survey::SurfaceClass::kRoof) &&
-           truth_.Normal(top.triangle).z() >= kLevelRoofNormal;
+           truth_.Normal(top.triangle).z() >= photos::kLevelRoofNormal;
   }
 
  private:
@@ -54,19 +54,19 @@ class TruthFromAbove {
 };
 
 struct Deck {
-  RoofArea area;  // survey ENU
+  photos::RoofArea area;  // survey ENU
   double z_m = 0.0;
 };
 
-RoofArea InSurvey(const RoofArea& roof, const geo::Rigid3d& survey_from_truth) {
-  RoofArea moved = roof;
+photos::RoofArea InSurvey(const photos::RoofArea& roof, const geo::Rigid3d& survey_from_truth) {
+  photos::RoofArea moved = roof;
   moved.centre = (survey_from_truth * Eigen::Vector3d(roof.centre.x(), roof.centre.y(), 0.0)).head<2>();
   moved.axis = (survey_from_truth.rotation * Eigen::Vector3d(roof.axis.x(), roof.axis.y(), 0.0)).head<2>().normalized();
   return moved;
 }
 
 // Height of a deck; NaN when the truth shows hardly any.
-double DeckHeight(const RoofArea& area, const TruthFromAbove& above) {
+double DeckHeight(const photos::RoofArea& area, const TruthFromAbove& above) {
   const Eigen::Vector2d across(-area.axis.y(), area.axis.x());
   std::vector<Eigen::Vector2d> places;
   for (double along = -area.half_m.x() + 0.5 * kProbeStep_m; along < area.half_m.x(); along += kProbeStep_m) {
@@ -96,7 +96,7 @@ bool OnOpenDeck(const Eigen::Vector2d& place, double deck_z_m, const TruthFromAb
   }
   const auto tops = above.At(probes);
   return std::all_of(tops.begin(), tops.begin() + probes.size(),
-                     [&](const TruthFromAbove::Top& top) { return std::abs(top.z_m - deck_z_m) <= kDeckTolerance_m; });
+                     [&](const TruthFromAbove::Top& top) { return std::abs(top.z_m - deck_z_m) <= photos::kDeckTolerance_m; });
 }
 
 // Whether the mesh has another surface above the point.
@@ -110,12 +110,12 @@ bool IsBelowMesh(const Eigen::Vector3f& point, const raytrace::TracedScene& trac
 }  // namespace
 
 DeckScore ScoreDecks(const SurfaceMesh& mesh, std::span<const SurfaceSample> mesh_samples, const TrueSurface& truth,
-                     const raytrace::TracedScene& traced_mesh, const raytrace::TracedScene& traced_truth, std::span<const RoofArea> roofs,
+                     const raytrace::TracedScene& traced_mesh, const raytrace::TracedScene& traced_truth, std::span<const photos::RoofArea> roofs,
                      double tolerance_m, base::ThreadPool& threads) {
   const TruthFromAbove above(truth, traced_truth);
   std::vector<Deck> decks;
-  for (const RoofArea& roof : roofs) {
-    const RoofArea area = InSurvey(roof, truth.survey_from_truth);
+  for (const photos::RoofArea& roof : roofs) {
+    const photos::RoofArea area = InSurvey(roof, truth.survey_from_truth);
     const double z_m = DeckHeight(area, above);
     if (std::isfinite(z_m)) decks.push_back({area, z_m});
   }
@@ -154,4 +154,4 @@ DeckScore ScoreDecks(const SurfaceMesh& mesh, std::span<const SurfaceSample> mes
   return score;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

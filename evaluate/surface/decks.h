@@ -13,7 +13,7 @@
 #include "evaluate/surface/samples.h"
 #include "evaluate/surface/true_surface.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 inline constexpr double kDeckEdge_m = 1.0;    // left out around everything that stands on a deck; RoofArea leaves out the same along the walls
 inline constexpr double kMeshFacesUp = 0.5;   // smallest upward component of the normals of the mesh on a deck
@@ -29,7 +29,7 @@ struct DeckScore {
 // only within kDeckLayers_m of the deck, because ground under a building is no deck. It is right when its height differs by at most tolerance_m from
 // the deck's, the median over the deck's true points. The same result for any number of threads.
 DeckScore ScoreDecks(const SurfaceMesh& mesh, std::span<const SurfaceSample> mesh_samples, const TrueSurface& truth,
-                     const raytrace::TracedScene& traced_mesh, const raytrace::TracedScene& traced_truth, std::span<const RoofArea> roofs,
+                     const raytrace::TracedScene& traced_mesh, const raytrace::TracedScene& traced_truth, std::span<const photos::RoofArea> roofs,
                      double tolerance_m, base::ThreadPool& threads);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

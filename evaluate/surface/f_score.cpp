@@ -14,7 +14,7 @@
 #include "evaluate/surface/nearest.h"
 #include "evaluate/surface/photo_errors.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 constexpr int64_t kMostSamples = 2'000'000;
@@ -123,7 +123,8 @@ std::vector<SurfaceSample> SampleMesh(const SurfacePair& pair) {
   std::vector<SurfaceSample> samples = SampleSurface(
       pair.mesh.position, pair.mesh.triangle, [&](uint32_t i) { return near.Touches(pair.mesh.position, pair.mesh.triangle[i]); },
       AreaPerSample(pair.gsd_m), kMostSamples);
-  std::erase_if(samples, [&](const SurfaceSample& sample) { return BlockAt(pair.mesh.middle + sample.point.cast<double>(), pair.boxes) < 0; });
+  std::erase_if(samples,
+                [&](const SurfaceSample& sample) { return photos::BlockAt(pair.mesh.middle + sample.point.cast<double>(), pair.boxes) < 0; });
   return samples;
 }
 
@@ -174,4 +175,4 @@ SurfaceComparison CompareSurfaces(const SurfacePair& pair, std::span<const Surfa
   return comparison;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -12,7 +12,7 @@
 #include "evaluate/surface/seen_surface.h"
 #include "evaluate/surface/surface_scores.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 // Names and lengths of the distances at which shares are measured. Without a ground sampling distance (0) only those in centimetres.
 struct ScoredDistance {
@@ -43,4 +43,4 @@ std::vector<SurfaceSample> SampleMesh(const SurfacePair& pair);
 // infinite. The same result for any number of threads. Throws base::Interrupted.
 SurfaceComparison CompareSurfaces(const SurfacePair& pair, std::span<const SurfaceSample> mesh_samples, base::ThreadPool& threads);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -8,7 +8,7 @@
 
 #include "surface/mesh.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 struct SurfaceMesh {
   struct Atlas {
@@ -18,7 +18,7 @@ struct SurfaceMesh {
 
   SurfaceMesh() = default;
   // Triangles with a corner that is not finite or does not exist are left out.
-  explicit SurfaceMesh(std::vector<surface::TexturedTile> tiles);
+  explicit SurfaceMesh(std::vector<skyquilt::surface::TexturedTile> tiles);
 
   // Index into `atlas`.
   size_t AtlasOf(uint32_t triangle_index) const;
@@ -30,4 +30,4 @@ struct SurfaceMesh {
   std::vector<Atlas> atlas;  // one per tile, in the order given
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

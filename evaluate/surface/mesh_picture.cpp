@@ -6,7 +6,7 @@
 
 #include "core/base/cancel.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 SurfacePainter::SurfacePainter(const SurfaceMesh& mesh, int64_t cache_bytes)
     : mesh_(mesh), traced_(mesh.position, mesh.triangle), cache_bytes_(cache_bytes), texture_(mesh.atlas.size()), last_use_(mesh.atlas.size(), 0) {}
@@ -109,4 +109,4 @@ SurfacePicture SurfacePainter::Paint(const camera::Camera& camera, const geo::Ri
   return picture;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -12,7 +12,7 @@
 #include "core/render/ray.h"
 #include "evaluate/surface/joined_mesh.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 struct SurfacePicture {
   std::vector<render::RayColor> colors;  // row-major; opacity 1 and the texture's colour where there is mesh, otherwise 0 and black
@@ -47,4 +47,4 @@ class SurfacePainter {
   std::vector<int64_t> last_use_;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 constexpr uint32_t kLeafTriangles = 4;
@@ -122,4 +122,4 @@ std::optional<NearestTriangles::Found> NearestTriangles::Nearest(const Eigen::Ve
   return found;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 // The point of the triangle a, b, c that is nearest to p. Triangles may have no area.
 Eigen::Vector3d NearestOnTriangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
@@ -44,4 +44,4 @@ class NearestTriangles {
   std::vector<Node> nodes_;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -6,14 +6,14 @@
 #include "core/base/errors.h"
 #include "evaluate/photos/pixel_groups.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 std::vector<ScoredClass> ScoredClasses() {
   using enum survey::SurfaceClass;
   return {{"roof", {kRoof}}, {"wall", {kWall}}, {"ground", {kGround, kRoad}}, {"road", {kRoad}}, {"tree", {kTree}}};
 }
 
-image::Image8 SurfacePhotoErrors::Add(const HeldOutPhoto& task, const PhotoResult& findings, const SurfacePicture& picture) {
+image::Image8 SurfacePhotoErrors::Add(const photos::HeldOutPhoto& task, const photos::PhotoResult& findings, const SurfacePicture& picture) {
   const size_t n_pixels = findings.scored.data.size();
   SKYQUILT_CHECK(picture.colors.size() == n_pixels && picture.has_mesh.size() == n_pixels && task.photo.data.size() == 3 * n_pixels &&
                      findings.render.data.size() == 3 * n_pixels,
@@ -30,31 +30,31 @@ image::Image8 SurfacePhotoErrors::Add(const HeldOutPhoto& task, const PhotoResul
   };
   const bool has_classes = findings.true_class.data.size() == n_pixels;
   any_class_ |= has_classes;
-  metrics::SquaredError all, with_mesh, field_with_mesh;
+  skyquilt::metrics::SquaredError all, with_mesh, field_with_mesh;
   int64_t missing = 0;
   for (size_t i = 0; i < n_pixels; ++i) {
     if (findings.scored.data[i] == 0) continue;
     const std::array<float, 3> photo = color_at(task.photo, i), of_mesh = color_at(shown, i), of_field = color_at(findings.render, i);
     const bool hit = picture.has_mesh[i] != 0;
-    AddPixel(of_mesh.data(), photo.data(), &all);
+    photos::AddPixel(of_mesh.data(), photo.data(), &all);
     if (hit) {
-      AddPixel(of_mesh.data(), photo.data(), &with_mesh);
-      AddPixel(of_field.data(), photo.data(), &field_with_mesh);
+      photos::AddPixel(of_mesh.data(), photo.data(), &with_mesh);
+      photos::AddPixel(of_field.data(), photo.data(), &field_with_mesh);
     } else {
       ++missing;
     }
     if (!has_classes || findings.true_class.data[i] >= survey::kSurfaceClasses) continue;
     ClassSums& sums = classes_[findings.true_class.data[i]];
-    AddPixel(of_mesh.data(), photo.data(), &sums.mesh);
-    AddPixel(of_field.data(), photo.data(), &sums.field);
+    photos::AddPixel(of_mesh.data(), photo.data(), &sums.mesh);
+    photos::AddPixel(of_field.data(), photo.data(), &sums.field);
     if (!hit) ++sums.missing;
   }
-  pixels_ += PixelsOf(all);
+  pixels_ += photos::PixelsOf(all);
   missing_ += missing;
-  psnr_.push_back(metrics::PsnrOf(all));
+  psnr_.push_back(skyquilt::metrics::PsnrOf(all));
   psnr_field_.push_back(findings.score.psnr_db);  // the same pixels, and the figure that the report gives elsewhere
-  psnr_where_mesh_.push_back(metrics::PsnrOf(with_mesh));
-  psnr_field_where_mesh_.push_back(metrics::PsnrOf(field_with_mesh));
+  psnr_where_mesh_.push_back(skyquilt::metrics::PsnrOf(with_mesh));
+  psnr_field_where_mesh_.push_back(skyquilt::metrics::PsnrOf(field_with_mesh));
   return shown;
 }
 
@@ -93,11 +93,11 @@ void SurfacePhotoErrors::Fill(SurfaceScores* scores) const {
     }
     SurfaceClassScore& score = scores->classes.emplace_back();
     score.name = group.name;
-    score.pixels = PixelsOf(sums.mesh);
+    score.pixels = photos::PixelsOf(sums.mesh);
     score.missing_pixels = sums.missing;
-    score.psnr_db = metrics::PsnrOf(sums.mesh);
-    score.psnr_field_db = metrics::PsnrOf(sums.field);
+    score.psnr_db = skyquilt::metrics::PsnrOf(sums.mesh);
+    score.psnr_field_db = skyquilt::metrics::PsnrOf(sums.field);
   }
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -12,7 +12,7 @@
 #include "evaluate/surface/mesh_picture.h"
 #include "evaluate/surface/surface_scores.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 // The classes that are scored, in order: name and members.
 struct ScoredClass {
@@ -25,7 +25,7 @@ class SurfacePhotoErrors {
  public:
   // Adds the scored pixels of a photo. findings: result of ScorePhoto for this task. picture: of the mesh, at the photo's brightness. Returns the
   // picture with 8 bits.
-  image::Image8 Add(const HeldOutPhoto& task, const PhotoResult& findings, const SurfacePicture& picture);
+  image::Image8 Add(const photos::HeldOutPhoto& task, const photos::PhotoResult& findings, const SurfacePicture& picture);
   // Sets the figures of pictures; classes only if a photo had true classes, then one per ScoredClasses().
   void Fill(SurfaceScores* scores) const;
   // All that was added, so that others can go on from here.
@@ -35,7 +35,7 @@ class SurfacePhotoErrors {
 
  private:
   struct ClassSums {
-    metrics::SquaredError mesh, field;
+    skyquilt::metrics::SquaredError mesh, field;
     int64_t missing = 0;
   };
   std::vector<double> psnr_, psnr_field_, psnr_where_mesh_, psnr_field_where_mesh_;  // of the photos
@@ -44,4 +44,4 @@ class SurfacePhotoErrors {
   bool any_class_ = false;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

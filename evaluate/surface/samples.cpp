@@ -6,7 +6,7 @@
 
 #include "core/base/random.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 std::vector<SurfaceSample> SampleSurface(std::span<const Eigen::Vector3f> position, std::span<const std::array<uint32_t, 3>> triangle,
                                          const std::function<bool(uint32_t)>& is_used, double area_m2, int64_t max_samples) {
@@ -41,4 +41,4 @@ std::vector<SurfaceSample> SampleSurface(std::span<const Eigen::Vector3f> positi
   return samples;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

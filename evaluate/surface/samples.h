@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 struct SurfaceSample {
   Eigen::Vector3f point;  // in the frame of the surface's positions
@@ -20,4 +20,4 @@ struct SurfaceSample {
 std::vector<SurfaceSample> SampleSurface(std::span<const Eigen::Vector3f> position, std::span<const std::array<uint32_t, 3>> triangle,
                                          const std::function<bool(uint32_t)>& is_used, double area_m2, int64_t max_samples);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

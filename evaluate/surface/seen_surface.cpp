@@ -7,7 +7,7 @@
 
 #include "evaluate/photos/pixel_groups.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 constexpr int kEnoughViews = 2;
@@ -16,10 +16,10 @@ constexpr float kClearance_m = 0.005F;
 
 }  // namespace
 
-SeenSurface::SeenSurface(const TrueSurface& truth, std::span<const TrainingView> training, const TrainingViews& views,
+SeenSurface::SeenSurface(const TrueSurface& truth, std::span<const photos::TrainingView> training, const photos::TrainingViews& views,
                          std::span<const geo::BlockBox> boxes)
     : truth_(truth), views_(views), boxes_(boxes), traced_(truth.position, truth.triangle) {
-  for (const TrainingView& view : training) centre_.push_back(view.cam_from_enu.OriginInSource());
+  for (const photos::TrainingView& view : training) centre_.push_back(view.cam_from_enu.OriginInSource());
   if (boxes.empty()) return;
   Eigen::Vector3d low = boxes[0].min_enu, high = boxes[0].max_enu;
   for (const geo::BlockBox& box : boxes) {
@@ -44,7 +44,7 @@ size_t SeenSurface::CellAt(const Eigen::Vector3d& point) const {
 }
 
 bool SeenSurface::Sees(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
-  if (order_.empty() || BlockAt(point, boxes_) < 0) return false;
+  if (order_.empty() || photos::BlockAt(point, boxes_) < 0) return false;
   const std::vector<int>& order = order_[CellAt(point)];
   const Eigen::Vector3f start = (point - truth_.middle).cast<float>() + kClearance_m * normal.cast<float>();
   int seen = 0;
@@ -68,4 +68,4 @@ bool SeenSurface::Sees(const Eigen::Vector3d& point, const Eigen::Vector3d& norm
   return false;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -11,12 +11,13 @@
 #include "evaluate/photos/coverage.h"
 #include "evaluate/surface/true_surface.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 class SeenSurface {
  public:
   // training: the same views as in `views`. All must outlive it.
-  SeenSurface(const TrueSurface& truth, std::span<const TrainingView> training, const TrainingViews& views, std::span<const geo::BlockBox> boxes);
+  SeenSurface(const TrueSurface& truth, std::span<const photos::TrainingView> training, const photos::TrainingViews& views,
+              std::span<const geo::BlockBox> boxes);
 
   // Whether the place is in a box (seen from above) and at least two training photos see it: it is in their frame and not masked, its outer side
   // faces them, and nothing of the true surface is in between. point: survey ENU, on a triangle with this normal.
@@ -29,7 +30,7 @@ class SeenSurface {
   size_t CellAt(const Eigen::Vector3d& point) const;
 
   const TrueSurface& truth_;
-  const TrainingViews& views_;
+  const photos::TrainingViews& views_;
   const std::span<const geo::BlockBox> boxes_;
   const raytrace::TracedScene traced_;
   std::vector<Eigen::Vector3d> centre_;  // of the views' cameras
@@ -39,4 +40,4 @@ class SeenSurface {
   std::vector<std::vector<int>> order_;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -10,7 +10,7 @@
 #include "core/base/log.h"
 #include "core/survey/geo_fit_json.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
@@ -179,4 +179,4 @@ SurfaceRecord ReadSurfaceRecord(const std::filesystem::path& file) {
   return {};
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

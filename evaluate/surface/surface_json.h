@@ -6,7 +6,7 @@
 
 #include "evaluate/surface/surface_scores.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 // NaN and infinity become null, and so do counts that are not known.
 nlohmann::ordered_json ToJson(const SurfaceScores& scores);
@@ -15,4 +15,4 @@ SurfaceScores SurfaceScoresFromJson(const nlohmann::ordered_json& json);
 // Reads surface.json. A file that is missing or damaged gives an empty record, because it is only shown.
 SurfaceRecord ReadSurfaceRecord(const std::filesystem::path& file);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

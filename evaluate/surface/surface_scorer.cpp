@@ -8,10 +8,10 @@
 #include "evaluate/surface/f_score.h"
 #include "evaluate/surface/surface_json.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
-void AddScoresInSpace(const EvaluateInput& input, const SurfaceMesh& mesh, const raytrace::TracedScene& traced, const HeldOutScorer& scorer,
+void AddScoresInSpace(const EvaluateInput& input, const SurfaceMesh& mesh, const raytrace::TracedScene& traced, const photos::HeldOutScorer& scorer,
                       base::ThreadPool& threads, SurfaceScores* scores) {
   const survey::Survey& survey = *input.survey;
   std::error_code ignored;
@@ -33,7 +33,7 @@ void AddScoresInSpace(const EvaluateInput& input, const SurfaceMesh& mesh, const
   for (size_t i = 0; i < classes.size(); ++i) scores->classes[i].agreement = std::move(comparison.by_class[i]);
 
   if (!(pair.gsd_m > 0.0) || !std::filesystem::is_regular_file(survey.truth->buildings_json, ignored)) return;
-  const std::vector<RoofArea> roofs = ReadFlatRoofs(survey.truth->buildings_json);
+  const std::vector<photos::RoofArea> roofs = photos::ReadFlatRoofs(survey.truth->buildings_json);
   const DeckScore decks = ScoreDecks(mesh, samples, truth, traced, seen.traced(), roofs, 2.0 * pair.gsd_m, threads);
   scores->deck_samples = decks.samples;
   scores->decks_within_2_gsd = decks.share_within;
@@ -41,15 +41,15 @@ void AddScoresInSpace(const EvaluateInput& input, const SurfaceMesh& mesh, const
 
 }  // namespace
 
-SurfaceScorer::SurfaceScorer(std::vector<surface::TexturedTile> tiles) : mesh_(std::move(tiles)), painter_(mesh_) {}
+SurfaceScorer::SurfaceScorer(std::vector<skyquilt::surface::TexturedTile> tiles) : mesh_(std::move(tiles)), painter_(mesh_) {}
 
-image::Image8 SurfaceScorer::Score(const ScoredPhoto& photo, base::ThreadPool& threads) {
+image::Image8 SurfaceScorer::Score(const photos::ScoredPhoto& photo, base::ThreadPool& threads) {
   SurfacePicture picture = painter_.Paint(photo.task.camera, photo.task.cam_from_enu, threads);
-  ApplyResponse(photo.task.camera, photo.recording, picture.colors, threads);
+  photos::ApplyResponse(photo.task.camera, photo.recording, picture.colors, threads);
   return photos_.Add(photo.task, photo.findings, picture);
 }
 
-SurfaceScores SurfaceScorer::Result(const EvaluateInput& input, const HeldOutScorer& scorer, base::ThreadPool& threads) const {
+SurfaceScores SurfaceScorer::Result(const EvaluateInput& input, const photos::HeldOutScorer& scorer, base::ThreadPool& threads) const {
   SurfaceScores scores;
   photos_.Fill(&scores);
   scores.record = ReadSurfaceRecord(input.project_folder / "surface" / "surface.json");
@@ -58,4 +58,4 @@ SurfaceScores SurfaceScorer::Result(const EvaluateInput& input, const HeldOutSco
   return scores;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 // Shares of two surfaces that are within a distance of each other (Knapitsch et al. 2017, Tanks and Temples), in [0, 1].
 struct SurfaceFScore {
@@ -73,4 +73,4 @@ struct SurfaceScores {
   SurfaceRecord record;
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

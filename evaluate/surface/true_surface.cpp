@@ -14,7 +14,7 @@
 #include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -127,4 +127,4 @@ TrueSurface ReadTrueSurface(const std::filesystem::path& surface_ply, const geo:
   return truth;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -10,7 +10,7 @@
 #include "core/geo/geodetic.h"
 #include "core/geo/transform.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 struct TrueSurface {
   // The simulator's frame and the survey's are both ENU about their origins. The survey's may be off by the error of its geo-reference, which is
@@ -33,4 +33,4 @@ geo::Rigid3d SurveyFromTruth(const std::filesystem::path& simulate_json, const g
 // simulate.json in the folder above; without that file both frames are the same. Throws base::InputError.
 TrueSurface ReadTrueSurface(const std::filesystem::path& surface_ply, const geo::Geodetic& survey_origin);
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -61,6 +61,25 @@ const std::map<std::string, std::set<std::string>>& AllowedIncludes() {
   return allowed;
 }
 
+// The folders of evaluate, with the others that each may include; the stage itself, at its top, may include them all.
+const std::map<std::string, std::set<std::string>>& AllowedInEvaluate() {
+  static const std::map<std::string, std::set<std::string>> allowed = {
+      {"photos", {}},
+      {"surface", {"photos"}},
+      {"buildings", {"surface"}},
+      {"control", {"photos"}},
+      {"metrics", {"photos", "surface", "buildings", "control"}},
+      {"page", {"photos", "surface", "buildings", "control", "metrics"}},
+  };
+  return allowed;
+}
+
+// What files of these folders may include from the top of evaluate.
+const std::set<std::string>& SharedInEvaluate() {
+  static const std::set<std::string> shared = {"evaluate/evaluate_input.h", "evaluate/evaluate_options.h", "evaluate/measured.h"};
+  return shared;
+}
+
 struct Library {
   std::string name;
   std::regex header;
@@ -96,6 +115,22 @@ std::string RoomOf(const std::string& path) {
   return path.substr(0, path.starts_with("core/") ? path.find('/', first + 1) : first);
 }
 
+// The folder inside the room of this name: "photos" for "evaluate/photos/coverage.h"; empty at its top and outside it.
+std::string FolderInside(const std::string& room, const std::string& path) {
+  if (!path.starts_with(room + "/")) return "";
+  const size_t begin = room.size() + 1, end = path.find('/', begin);
+  return end == std::string::npos ? "" : path.substr(begin, end - begin);
+}
+
+// Why `file` of evaluate may not include `header` of it; empty when it may.
+std::string ViolationInEvaluate(const std::string& file, const std::string& header) {
+  const std::string folder = FolderInside("evaluate", file), other = FolderInside("evaluate", header);
+  if (folder.empty() || folder == other || SharedInEvaluate().contains(header)) return "";
+  const auto allowed = AllowedInEvaluate().find(folder);
+  if (allowed == AllowedInEvaluate().end()) return folder + " is not a folder of AllowedInEvaluate";
+  return allowed->second.contains(other) ? "" : "evaluate/" + folder + " may not include " + (other.empty() ? header : "evaluate/" + other);
+}
+
 bool IsOurs(const std::string& folder) {
   return std::any_of(AllowedIncludes().begin(), AllowedIncludes().end(),
                      [&](const auto& room) { return room.first == folder || room.first.starts_with(folder + "/"); });
@@ -112,6 +147,7 @@ std::string Violation(const std::string& file, const std::string& header) {
   const auto allowed = AllowedIncludes().find(room);
   if (allowed == AllowedIncludes().end()) return room + " is not a room of AllowedIncludes";
   const std::string other = RoomOf(header);
+  if (room == "evaluate" && other == room) return ViolationInEvaluate(file, header);
   if (other == room || allowed->second.contains(other)) return "";
   if (other.starts_with("core/") && allowed->second.contains("core") && AllowedIncludes().contains(other)) return "";
   return room + " may not include " + other;
@@ -172,15 +208,8 @@ bool HasAny(const std::string& line, const std::vector<std::string>& words) {
   return std::any_of(words.begin(), words.end(), [&line](const std::string& word) { return line.find(word) != std::string::npos; });
 }
 
-TEST(Rooms, HaveNoCyclicIncludes) {
-  // Removes rooms that include none of those left, until none is left.
-  std::map<std::string, std::set<std::string>> left = AllowedIncludes();
-  for (auto& [room, others] : left) {
-    if (others.erase("core") == 0) continue;
-    for (const auto& [other, ignored] : AllowedIncludes()) {
-      if (other.starts_with("core/")) others.insert(other);
-    }
-  }
+// Removes rooms that include none of those left, until none is left.
+void ExpectNoCycle(std::map<std::string, std::set<std::string>> left) {
   while (!left.empty()) {
     const auto end = std::find_if(left.begin(), left.end(), [](const auto& room) { return room.second.empty(); });
     ASSERT_NE(end, left.end()) << "a cycle with " << left.begin()->first;
@@ -188,6 +217,35 @@ TEST(Rooms, HaveNoCyclicIncludes) {
     left.erase(end);
     for (auto& [other, others] : left) others.erase(room);
   }
+}
+
+TEST(Rooms, HaveNoCyclicIncludes) {
+  std::map<std::string, std::set<std::string>> rooms = AllowedIncludes();
+  for (auto& [room, others] : rooms) {
+    if (others.erase("core") == 0) continue;
+    for (const auto& [other, ignored] : AllowedIncludes()) {
+      if (other.starts_with("core/")) others.insert(other);
+    }
+  }
+  ExpectNoCycle(rooms);
+  ExpectNoCycle(AllowedInEvaluate());
+}
+
+TEST(Rooms, FoldersOfEvaluateAreNamespacesOfIt) {
+  // Found by their ends, because a type of another folder may be declared in a line.
+  static const std::regex kEnd("^\\}  // namespace skyquilt::evaluate(?:::(\\w+))?");
+  std::set<std::string> named;
+  for (const auto& [file, lines] : Sources()) {
+    if (RoomOf(file) != "evaluate") continue;
+    const std::string folder = FolderInside("evaluate", file);
+    for (const std::string& line : lines) {
+      std::smatch match;
+      if (!line.starts_with("}  // namespace skyquilt::evaluate") || !std::regex_match(line, match, kEnd)) continue;
+      named.insert(folder);
+      EXPECT_EQ(match[1], folder) << file;
+    }
+  }
+  for (const auto& [folder, ignored] : AllowedInEvaluate()) EXPECT_TRUE(named.contains(folder)) << folder;
 }
 
 TEST(Rooms, EveryFolderWithCodeIsOne) {
@@ -323,6 +381,10 @@ TEST(Rooms, ForbiddenIncludesAreFound) {
       {"surface/mesh/a.cpp", "#include \"products/map_rays.h\""},
       {"tour/format/a.cpp", "#include \"viewer/data/project_data.h\""},
       {"coordinator/stages/a.cpp", "#include \"viewer/tour_parts.h\""},
+      {"evaluate/photos/a.cpp", "#include \"evaluate/metrics/metrics.h\""},
+      {"evaluate/surface/a.h", "#include \"evaluate/evaluate.h\""},
+      {"evaluate/buildings/a.cpp", "#include \"evaluate/page/page_parts.h\""},
+      {"evaluate/nowhere/a.cpp", "#include \"evaluate/photos/coverage.h\""},
   };
   for (const auto& [file, line] : violators) {
     const std::vector<std::string> found = ViolationsIn(file, "#include <vector>\n" + line + "  // why\nint x;\n");
@@ -352,6 +414,10 @@ TEST(Rooms, AllowedIncludesAreAccepted) {
       {"app/commands/render.cpp", "#include \"products/render_views.h\""},
       {"evaluate/a.cpp", "#include \"partition/block.h\""},
       {"evaluate/a.cpp", "#include \"surface/make_surface.h\""},
+      {"evaluate/evaluate.cpp", "#include \"evaluate/page/report_writer.h\""},
+      {"evaluate/surface/a.cpp", "#include \"evaluate/photos/coverage.h\""},
+      {"evaluate/surface/a.cpp", "#include \"evaluate/measured.h\""},
+      {"bench/a.cpp", "#include \"evaluate/surface/true_surface.h\""},
       {"tour/export/a.cpp", "#include \"products/ray_caster.h\""},
       {"viewer/data/a.cpp", "#include \"tour/format/read_tour.h\""},
       {"core/field/a.cpp", "// #include <mpi.h>"},

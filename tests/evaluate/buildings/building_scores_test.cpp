@@ -11,11 +11,8 @@
 #include "tests/evaluate/buildings/buildings_sample.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
-
-using buildings::Building;
-using buildings::BuildingSet;
 
 BuildingScores Scored(BuildingSet set, TrueBuildings truth) {
   base::ThreadPool threads(2);
@@ -88,9 +85,9 @@ TEST(BuildingScores, MissingAndInventedBuildingsGiveTheExpectedShares) {
     if (i < 2) missed_m2 += truth.outlines[i].area_m2;
   }
   set.buildings.erase(set.buildings.begin(), set.buildings.begin() + 2);
-  buildings::HousePlan elsewhere;
+  skyquilt::buildings::HousePlan elsewhere;
   elsewhere.origin = {1000.0, 0.0};
-  set.buildings.push_back(buildings::MadeHouse(elsewhere, 99));
+  set.buildings.push_back(skyquilt::buildings::MadeHouse(elsewhere, 99));
   const double invented_m2 = set.buildings.back().measures.footprint_m2.value;
   const BuildingDetection all = Scored(set, truth).truth->detection.front();
   EXPECT_EQ(all.size, "all");
@@ -129,12 +126,12 @@ TEST(BuildingScores, ASplitBuildingIsFoundOnceAndInventedOnce) {
   BuildingSet split = whole;
   split.buildings.push_back(split.buildings.front());
   const auto part = [&](double from, double to) {
-    const buildings::Shape& shape = whole.buildings.front().shape;
+    const skyquilt::buildings::Shape& shape = whole.buildings.front().shape;
     const double length = shape.u.back(), width = shape.v.back();
-    buildings::Polygon polygon;
+    Polygon polygon;
     for (const Eigen::Vector2d& uv : {Eigen::Vector2d(from * length, 0), Eigen::Vector2d(to * length, 0), Eigen::Vector2d(to * length, width),
                                       Eigen::Vector2d(from * length, width)}) {
-      polygon.outer.push_back(buildings::EnuOf(shape, uv));
+      polygon.outer.push_back(skyquilt::buildings::EnuOf(shape, uv));
     }
     return polygon;
   };
@@ -162,7 +159,8 @@ TEST(BuildingScores, WhatIsFoundOverOutlinesThatDoNotCountIsCutOff) {
 }
 
 TEST(SummariseErrors, GivesTheKnownFigures) {
-  const std::vector<MeasureError> errors = {{1.0, 1.0}, {-1.0, 0.1}, {3.0, buildings::kUnknown}, {5.0, 10.0}, {buildings::kUnknown, 1.0}};
+  const std::vector<MeasureError> errors = {
+      {1.0, 1.0}, {-1.0, 0.1}, {3.0, skyquilt::buildings::kUnknown}, {5.0, 10.0}, {skyquilt::buildings::kUnknown, 1.0}};
   const BuildingErrors summary = SummariseErrors("length", errors);
   EXPECT_EQ(summary.n, 4);
   EXPECT_DOUBLE_EQ(summary.bias, 2.0);
@@ -197,10 +195,10 @@ TEST(YawError, IsModuloHalfATurnOrAQuarter) {
 }
 
 TEST(ScoreMeasures, SquareBuildingsMayBeTurnedByAQuarter) {
-  buildings::HousePlan plan;
+  skyquilt::buildings::HousePlan plan;
   plan.length_m = plan.width_m = 10.0;
   BuildingSet set;
-  set.buildings = {buildings::MadeHouse(plan)};
+  set.buildings = {skyquilt::buildings::MadeHouse(plan)};
   const TrueBuildings truth = TruthOf(set);
   set.buildings[0].measures.yaw_deg.value += 91.0;
   EXPECT_NEAR(Find(Scored(set, truth).truth->roofs.front(), "yaw")->bias, 1.0, 1e-9);
@@ -214,7 +212,7 @@ TEST(ScoreMeasures, ErrorsAreFoundMinusTrueAndWrongRoofsAreSeen) {
     building.measures.width_m.value -= 0.5;
     building.measures.width_m.sigma = 0.3;
   }
-  set.buildings[0].roof = buildings::RoofKind::kOther;  // a gable
+  set.buildings[0].roof = RoofKind::kOther;  // a gable
   const std::vector<BuildingRoofScores> roofs = Scored(set, truth).truth->roofs;
   EXPECT_NEAR(Find(roofs[0], "ridge")->bias, 0.25, 1e-9);
   EXPECT_NEAR(Find(roofs[0], "deck")->bias, 0.25, 1e-9);
@@ -279,7 +277,7 @@ TEST(BuildingScores, WithoutTruthThereAreCountsAndSums) {
   for (const Building& building : compared.set.buildings) footprint_m2 += building.measures.footprint_m2.value;
   compared.set.buildings[0].accepted = false;
   compared.set.buildings[1].lod22_valid = false;
-  compared.set.buildings[1].measures.volume_m3.value = buildings::kUnknown;
+  compared.set.buildings[1].measures.volume_m3.value = skyquilt::buildings::kUnknown;
   compared.set.buildings[2].lod22.face.pop_back();  // no longer closed
   compared.set.metric = false;
   base::ThreadPool threads(1);
@@ -300,7 +298,7 @@ TEST(LoadBuildingsOf, ReadsWhatTheStageWroteAndTheTruthOfGeoReferencedSurveys) {
   survey::Survey survey;
   EXPECT_FALSE(LoadBuildingsOf(folder.path(), survey).has_value());
   std::filesystem::create_directories(folder / "buildings");
-  buildings::SaveBuildings(MadeTown(2), surface::MapFrame(scene::SceneInfo()), folder / "buildings/buildings.json");
+  skyquilt::buildings::SaveBuildings(MadeTown(2), skyquilt::surface::MapFrame(scene::SceneInfo()), folder / "buildings/buildings.json");
   const auto alone = LoadBuildingsOf(folder.path(), survey);
   ASSERT_TRUE(alone.has_value());
   EXPECT_EQ(alone->set.buildings.size(), 2U);
@@ -319,4 +317,4 @@ TEST(LoadBuildingsOf, ReadsWhatTheStageWroteAndTheTruthOfGeoReferencedSurveys) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

@@ -10,7 +10,7 @@
 #include "evaluate/metrics/metrics.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
 
 BuildingScores SampleScores() {
@@ -40,10 +40,10 @@ BuildingScores SampleScores() {
 }
 
 TEST(BuildingsJson, HasThePromisedKeys) {
-  Metrics metrics;
-  EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("buildings"));
+  metrics::Metrics metrics;
+  EXPECT_FALSE(base::ParseJson(metrics::MetricsJson(metrics)).contains("buildings"));
   metrics.buildings = SampleScores();
-  const auto json = base::ParseJson(MetricsJson(metrics)).at("buildings");
+  const auto json = base::ParseJson(metrics::MetricsJson(metrics)).at("buildings");
   EXPECT_EQ(json.at("building_completeness"), 0.8);
   EXPECT_EQ(json.at("building_correctness"), 0.875);
   EXPECT_EQ(json.at("building_quality"), 0.75);
@@ -67,16 +67,16 @@ TEST(BuildingsJson, HasThePromisedKeys) {
 TEST(BuildingsJson, IsReadBackAsItWasWritten) {
   const TemporaryFolder folder;
   for (const bool with_truth : {true, false}) {
-    Metrics metrics;
+    metrics::Metrics metrics;
     metrics.buildings = SampleScores();
     metrics.buildings->metric = with_truth;
     if (!with_truth) metrics.buildings->truth.reset();
-    const std::string text = MetricsJson(metrics);
+    const std::string text = metrics::MetricsJson(metrics);
     base::WriteFileAtomically(folder.path() / "metrics.json", text);
-    const Metrics back = ReadMetrics(folder.path() / "metrics.json");
+    const metrics::Metrics back = metrics::ReadMetrics(folder.path() / "metrics.json");
     ASSERT_TRUE(back.buildings.has_value());
     EXPECT_EQ(back.buildings->truth.has_value(), with_truth);
-    EXPECT_EQ(MetricsJson(back), text);
+    EXPECT_EQ(metrics::MetricsJson(back), text);
   }
 }
 
@@ -98,4 +98,4 @@ TEST(BuildingsJson, WrongTypesAreNotMeasured) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

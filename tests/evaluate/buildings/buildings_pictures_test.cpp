@@ -8,7 +8,7 @@
 #include "tests/evaluate/buildings/buildings_sample.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
 
 TEST(CameraOfPart, SeesTheSamePartEnlarged) {
@@ -17,7 +17,7 @@ TEST(CameraOfPart, SeesTheSamePartEnlarged) {
                                                                            {CameraModel::kPinhole, {500, 510, 321, 239}},
                                                                            {CameraModel::kRadial, {500, 320, 240, -0.05, 0.01}},
                                                                            {CameraModel::kOpencv, {500, 505, 318, 243, -0.05, 0.01, 1e-3, -1e-3}}};
-  const buildings::PhotoPart part{120, 80, 90, 60};
+  const skyquilt::buildings::PhotoPart part{120, 80, 90, 60};
   for (const auto& [model, params] : lenses) {
     camera::Camera camera;
     camera.model = model;
@@ -63,7 +63,7 @@ class PicturesOfTown : public testing::Test {
   TemporaryFolder folder_;
   base::ThreadPool threads_{1};
   survey::Survey survey_;
-  buildings::BuildingSet set_ = MadeTown(3);
+  BuildingSet set_ = MadeTown(3);
   bool without_file_ = false;
 };
 
@@ -94,4 +94,4 @@ TEST_F(PicturesOfTown, AreTakenFromTheCacheWhereThePhotoIsGone) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

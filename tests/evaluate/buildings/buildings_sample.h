@@ -9,15 +9,15 @@
 #include "evaluate/buildings/match_buildings.h"
 #include "tests/buildings/sample_buildings.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 
-inline buildings::Polygon Square(double west, double south, double size_m) {
+inline Polygon Square(double west, double south, double size_m) {
   return {{{west, south}, {west + size_m, south}, {west + size_m, south + size_m}, {west, south + size_m}}, {}};
 }
 
 // What the truth says of a building that was measured without error.
-inline TrueBuilding TruthOf(const buildings::Building& building) {
-  const buildings::Measures& measures = building.measures;
+inline TrueBuilding TruthOf(const Building& building) {
+  const skyquilt::buildings::Measures& measures = building.measures;
   TrueBuilding truth;
   truth.id = building.id - 1;
   truth.shape = "rectangle";
@@ -35,23 +35,23 @@ inline TrueBuilding TruthOf(const buildings::Building& building) {
 }
 
 // Gable, hip and flat roofs side by side, 40 m apart; the sheds among them have less than 50 m2.
-inline buildings::BuildingSet MadeTown(int n) {
-  buildings::BuildingSet set;
+inline BuildingSet MadeTown(int n) {
+  BuildingSet set;
   set.scale_source = "geo-reference";
   set.gsd_m = 0.2;
   for (int i = 0; i < n; ++i) {
-    buildings::HousePlan plan;
-    plan.roof = i % 3 == 0 ? buildings::RoofKind::kGable : i % 3 == 1 ? buildings::RoofKind::kHip : buildings::RoofKind::kFlat;
+    skyquilt::buildings::HousePlan plan;
+    plan.roof = i % 3 == 0 ? RoofKind::kGable : i % 3 == 1 ? RoofKind::kHip : RoofKind::kFlat;
     plan.length_m = i % 4 == 3 ? 7.0 : 12.0 + 0.5 * i;
     plan.width_m = i % 4 == 3 ? 5.0 : 8.0;
     plan.origin = {40.0 * (i % 8), 40.0 * std::floor(i / 8.0)};
     plan.yaw_rad = 0.1 * i;
-    set.buildings.push_back(buildings::MadeHouse(plan, i + 1));
+    set.buildings.push_back(skyquilt::buildings::MadeHouse(plan, i + 1));
   }
   return set;
 }
 
-inline ComparedBuildings Compared(buildings::BuildingSet set, TrueBuildings truth) {
+inline ComparedBuildings Compared(BuildingSet set, TrueBuildings truth) {
   ComparedBuildings compared;
   compared.matches = MatchBuildings(set, truth);
   compared.set = std::move(set);
@@ -59,10 +59,10 @@ inline ComparedBuildings Compared(buildings::BuildingSet set, TrueBuildings trut
   return compared;
 }
 
-inline TrueBuildings TruthOf(const buildings::BuildingSet& set) {
+inline TrueBuildings TruthOf(const BuildingSet& set) {
   TrueBuildings truth;
-  for (const buildings::Building& building : set.buildings) truth.outlines.push_back(TruthOf(building));
+  for (const Building& building : set.buildings) truth.outlines.push_back(TruthOf(building));
   return truth;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

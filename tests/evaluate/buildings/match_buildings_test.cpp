@@ -8,11 +8,11 @@
 #include "core/base/random.h"
 #include "tests/evaluate/buildings/buildings_sample.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
 
-std::vector<buildings::Polygon> RandomSquares(size_t n, base::Random& random) {
-  std::vector<buildings::Polygon> squares;
+std::vector<Polygon> RandomSquares(size_t n, base::Random& random) {
+  std::vector<Polygon> squares;
   for (size_t i = 0; i < n; ++i) {
     const double x = random.Uniform(0.0, 40.0), y = random.Uniform(0.0, 40.0);
     squares.push_back(Square(x, y, random.Uniform(3.0, 12.0)));
@@ -23,8 +23,8 @@ std::vector<buildings::Polygon> RandomSquares(size_t n, base::Random& random) {
 TEST(MatchFootprints, IsOneToOneAndBestFirst) {
   base::Random random(5);
   for (int round = 0; round < 20; ++round) {
-    const std::vector<buildings::Polygon> found = RandomSquares(25, random);
-    std::vector<buildings::Polygon> truth = RandomSquares(25, random);
+    const std::vector<Polygon> found = RandomSquares(25, random);
+    std::vector<Polygon> truth = RandomSquares(25, random);
     for (size_t i = 0; i < 12; ++i) {  // some that agree more or less
       truth[i] = found[2 * i];
       for (Eigen::Vector2d& point : truth[i].outer) point += Eigen::Vector2d{random.Uniform(-2.0, 2.0), random.Uniform(-2.0, 2.0)} * 0.5;
@@ -45,7 +45,7 @@ TEST(MatchFootprints, IsOneToOneAndBestFirst) {
     for (size_t a = 0; a < found.size(); ++a) {
       for (size_t b = 0; b < truth.size(); ++b) {
         if (f.contains(a) || t.contains(b)) continue;
-        EXPECT_LT(buildings::IntersectionOverUnion(std::span(&found[a], 1), std::span(&truth[b], 1)), kMatchingOverlap + 1e-9);
+        EXPECT_LT(skyquilt::buildings::IntersectionOverUnion(std::span(&found[a], 1), std::span(&truth[b], 1)), kMatchingOverlap + 1e-9);
       }
     }
     EXPECT_EQ(MatchFootprints(truth, found).size(), pairs.size()) << "neither side is preferred";
@@ -53,8 +53,8 @@ TEST(MatchFootprints, IsOneToOneAndBestFirst) {
 }
 
 TEST(MatchFootprints, TheBetterOfTwoWins) {
-  const std::vector<buildings::Polygon> truth = {Square(0, 0, 10)};
-  const std::vector<buildings::Polygon> found = {Square(2, 0, 10), Square(1, 0, 10)};
+  const std::vector<Polygon> truth = {Square(0, 0, 10)};
+  const std::vector<Polygon> found = {Square(2, 0, 10), Square(1, 0, 10)};
   const std::vector<BuildingPair> pairs = MatchFootprints(found, truth);
   ASSERT_EQ(pairs.size(), 1U);
   EXPECT_EQ(pairs[0].found, 1U);
@@ -69,17 +69,17 @@ struct Fates {
   size_t True(TrueFate fate) const { return static_cast<size_t>(std::count(matches.truth.begin(), matches.truth.end(), fate)); }
 };
 
-TrueBuilding OutlineOver(const buildings::Polygon& walls, bool inside = true) {
+TrueBuilding OutlineOver(const Polygon& walls, bool inside = true) {
   TrueBuilding outline;
   outline.walls = walls;
-  outline.area_m2 = buildings::Area(walls);
+  outline.area_m2 = Area(walls);
   outline.inside = inside;
   return outline;
 }
 
-Fates FatesOf(const std::vector<buildings::Polygon>& footprints, const TrueBuildings& truth) {
-  buildings::BuildingSet set;
-  for (const buildings::Polygon& footprint : footprints) set.buildings.emplace_back().footprint = footprint;
+Fates FatesOf(const std::vector<Polygon>& footprints, const TrueBuildings& truth) {
+  BuildingSet set;
+  for (const Polygon& footprint : footprints) set.buildings.emplace_back().footprint = footprint;
   return {MatchBuildings(set, truth)};
 }
 
@@ -119,10 +119,10 @@ TEST(MatchBuildings, SmallOutlinesDoNotCount) {
 
 TEST(MatchBuildings, OneThatOverlapsBothBelongsWhereItOverlapsMost) {
   const TrueBuildings truth{{OutlineOver(Square(0, 0, 10)), OutlineOver(Square(12, 0, 10), false)}, std::nullopt};
-  const buildings::Polygon mostly_counted{{{6, 0}, {14, 0}, {14, 2}, {6, 2}}, {}}, mostly_not{{{8, 0}, {18, 0}, {18, 2}, {8, 2}}, {}};
+  const Polygon mostly_counted{{{6, 0}, {14, 0}, {14, 2}, {6, 2}}, {}}, mostly_not{{{8, 0}, {18, 0}, {18, 2}, {8, 2}}, {}};
   EXPECT_EQ(FatesOf({mostly_counted}, truth).Found(FoundFate::kInvented), 1U);
   EXPECT_EQ(FatesOf({mostly_not}, truth).Found(FoundFate::kNotCounted), 1U);
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

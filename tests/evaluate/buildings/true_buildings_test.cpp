@@ -10,7 +10,7 @@
 #include "core/geo/enu_frame.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::buildings {
 namespace {
 
 constexpr const char* kOutline = R"({"outlines": [{"id": 7, "shape": "courtyard", "kind": "apartment", "roof": "hip", "parts": [0, 1],
@@ -49,9 +49,9 @@ TEST_F(TrueBuildingsFile, OutlinesAreReadWithTheirHoles) {
   const TrueBuilding& one = truth.outlines[0];
   EXPECT_EQ(one.id, 7);
   EXPECT_EQ(one.kind, "apartment");
-  EXPECT_EQ(one.roof, buildings::RoofKind::kHip);
+  EXPECT_EQ(one.roof, RoofKind::kHip);
   EXPECT_NEAR(one.area_m2, 200.0, 1e-9) << "the hole counts, however its ring is turned";
-  EXPECT_FALSE(buildings::Contains(one.walls, {10, 6}));
+  EXPECT_FALSE(Contains(one.walls, {10, 6}));
   EXPECT_DOUBLE_EQ(one.ground_z_m, 3.0);
   EXPECT_DOUBLE_EQ(one.eave_z_m, 9.0);
   EXPECT_EQ(one.other_eaves_z_m, (std::vector<double>{9.0, 7.0})) << "parts of nearly the same size";
@@ -66,7 +66,7 @@ TEST_F(TrueBuildingsFile, RowsOfEarlierSurveysBecomeRectangles) {
   const TrueBuilding& one = truth.outlines[0];
   EXPECT_EQ(one.walls.outer.size(), 4U);
   EXPECT_NEAR(one.area_m2, 160.0, 1e-9);
-  EXPECT_NEAR((buildings::Centroid(one.walls) - Eigen::Vector2d(50, 0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((Centroid(one.walls) - Eigen::Vector2d(50, 0)).norm(), 0.0, 1e-9);
   EXPECT_DOUBLE_EQ(one.length_m, 16.0) << "the longer side";
   EXPECT_DOUBLE_EQ(one.width_m, 10.0);
   EXPECT_NEAR(one.yaw_deg, 120.0, 1e-9);
@@ -79,7 +79,7 @@ TEST_F(TrueBuildingsFile, ARowMustBeWhollyInsideTheSurveyedArea) {
   const TrueBuildings truth = Read(Row(55.0, 16.0, 10.0, true));
   EXPECT_FALSE(truth.outlines[0].inside) << "only its centre is";
   ASSERT_TRUE(truth.area.has_value());
-  EXPECT_NEAR(buildings::Area(*truth.area), 120.0 * 120.0, 1e-6);
+  EXPECT_NEAR(Area(*truth.area), 120.0 * 120.0, 1e-6);
 }
 
 TEST_F(TrueBuildingsFile, AreMovedWhenTheSurveyHasAnotherOrigin) {
@@ -94,7 +94,7 @@ TEST_F(TrueBuildingsFile, AreMovedWhenTheSurveyHasAnotherOrigin) {
   EXPECT_NEAR(truth.outlines[0].ground_z_m, corner.z(), 0.01);
   EXPECT_NEAR(truth.outlines[0].ridge_z_m - truth.outlines[0].ground_z_m, 9.5, 1e-6);
   const Eigen::Vector3d middle = survey.EnuFromGeodetic(simulated.GeodeticFromEnu({0, 0, 0}));
-  EXPECT_TRUE(buildings::Contains(*truth.area, middle.head<2>()));
+  EXPECT_TRUE(Contains(*truth.area, middle.head<2>()));
 }
 
 TEST_F(TrueBuildingsFile, DamageIsNoticed) {
@@ -108,4 +108,4 @@ TEST_F(TrueBuildingsFile, DamageIsNoticed) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::buildings

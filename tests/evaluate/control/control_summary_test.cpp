@@ -7,7 +7,7 @@
 
 #include "evaluate/control/control_json.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 namespace {
 
 using Eigen::Vector3d;
@@ -146,4 +146,4 @@ TEST(ControlJson, HasGroupsAndPoints) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

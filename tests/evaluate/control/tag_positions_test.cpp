@@ -7,7 +7,7 @@
 #include "core/geo/enu_frame.h"
 #include "tests/support/not_finite.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::control {
 namespace {
 
 // One photo at (10, 20, 30) m whose tag is 3 m west and 4 m up of it, and corrected by 1 m eastwards.
@@ -74,4 +74,4 @@ TEST(PhotosByFlight, AreInTheOrderOfTheirTimes) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::control

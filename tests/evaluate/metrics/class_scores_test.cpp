@@ -9,7 +9,7 @@
 #include "core/base/random.h"
 #include "tests/evaluate/photos/nadir_view.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 namespace {
 
 using survey::SurfaceClass;
@@ -18,11 +18,11 @@ constexpr int kClassesWidth = 100, kClassesHeight = 80;
 
 // A photo of level ground 100 m below, rendered exactly, all of it road on the left and roof on the right.
 struct Surface {
-  HeldOutPhoto task;
-  PhotoResult findings;
+  photos::HeldOutPhoto task;
+  photos::PhotoResult findings;
 
   Surface() {
-    const TrainingView view = NadirView(0, 0, 100);
+    const photos::TrainingView view = NadirView(0, 0, 100);
     task.camera = view.camera;
     task.cam_from_enu = view.cam_from_enu;
     findings.scored = image::Image8(kClassesWidth, kClassesHeight, 1, 1);
@@ -206,4 +206,4 @@ RC_GTEST_PROP(ClassErrors, AnOffsetChangesTheBiasOnly, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

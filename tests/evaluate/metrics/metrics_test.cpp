@@ -10,7 +10,7 @@
 #include "core/base/json_text.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 namespace {
 
 TEST(MeanOfMeasured, LeavesOutWhatWasNotMeasured) {
@@ -50,7 +50,7 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   metrics.depth_rmse_m = 0.75;
   metrics.floater_opacity = 0.02;
   metrics.floater_profile = {{1.0, 0.03}, {10.0, kNotMeasured}};
-  PhotoScore good, blank, equal;
+  photos::PhotoScore good, blank, equal;
   good.name = "a/one.jpg";
   good.psnr_db = 27.5;
   good.used_pixels = 10;
@@ -218,7 +218,7 @@ TEST(MetricsJson, TheGeoReferenceOfAnEarlierVersionIsRead) {
 
 TEST(MetricsJson, FileNamesThatAreNotUtf8AreRepaired) {
   Metrics metrics;
-  PhotoScore photo;
+  photos::PhotoScore photo;
   photo.name = "M\xFChle.jpg";
   metrics.photos = {photo};
   EXPECT_NO_THROW({
@@ -228,4 +228,4 @@ TEST(MetricsJson, FileNamesThatAreNotUtf8AreRepaired) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 namespace {
 
-ScoredPhoto Photo(double psnr_db, int64_t covered_pixels) {
-  ScoredPhoto photo;
+photos::ScoredPhoto Photo(double psnr_db, int64_t covered_pixels) {
+  photos::ScoredPhoto photo;
   photo.findings.score.psnr_db = psnr_db;
   photo.findings.score.used_pixels = 100;
   photo.findings.score.covered_pixels = covered_pixels;
@@ -31,4 +31,4 @@ TEST(Scores, MeansAreOverPhotosAndSharesOverPixels) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 namespace {
 
 TEST(ParseCurve, ReadsColumnsByName) {
@@ -39,4 +39,4 @@ TEST(ReadCurves, TakesTheFilesThatAreThere) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

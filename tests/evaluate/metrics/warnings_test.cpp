@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 namespace {
 
 bool Mentions(const std::vector<Warning>& warnings, const std::string& text) {
@@ -165,4 +165,4 @@ TEST(CollectWarnings, EachSaysWhatToDoAndLeavesTheFullStopToOthers) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

@@ -1,11 +1,12 @@
+#include "evaluate/page/buildings_section.h"
+
 #include <gtest/gtest.h>
 
 #include "core/base/pattern.h"
-#include "evaluate/buildings/buildings_report.h"
 #include "evaluate/page/building_numbers.h"
 #include "tests/evaluate/buildings/buildings_sample.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 size_t OccurrencesIn(const std::string& text, const std::string& part) {
@@ -16,18 +17,18 @@ size_t OccurrencesIn(const std::string& text, const std::string& part) {
 
 // A report without photos. Its input points to the members.
 struct BuildingsPage {
-  Metrics metrics;
+  metrics::Metrics metrics;
   survey::Survey survey;
   partition::BlockSet blocks;
   scene::TrainReport training;
-  BuildingsReport report;
+  buildings::BuildingsReport report;
   ReportInput input;
 
-  explicit BuildingsPage(ComparedBuildings compared) {
+  explicit BuildingsPage(buildings::ComparedBuildings compared) {
     survey.georeferenced = true;
     report.compared = std::move(compared);
     base::ThreadPool threads(1);
-    metrics.buildings = ScoreBuildings(report.compared, threads);
+    metrics.buildings = buildings::ScoreBuildings(report.compared, threads);
     input.metrics = &metrics;
     input.survey = &survey;
     input.blocks = &blocks;
@@ -38,8 +39,8 @@ struct BuildingsPage {
   BuildingsPage& operator=(const BuildingsPage&) = delete;
 };
 
-ComparedBuildings Untrue(buildings::BuildingSet set) {
-  ComparedBuildings compared;
+buildings::ComparedBuildings Untrue(skyquilt::buildings::BuildingSet set) {
+  buildings::ComparedBuildings compared;
   compared.set = std::move(set);
   return compared;
 }
@@ -71,14 +72,14 @@ TEST(ShownMeasure, HasTwoDigitsOfUncertaintyAndAValueToMatch) {
   EXPECT_EQ(shown(-0.5, 0.1),
             "\xE2\x88\x92"
             "0.50 \xC2\xB1 0.10 m");
-  EXPECT_EQ(shown(8.5342, buildings::kUnknown), "8.53 m");
+  EXPECT_EQ(shown(8.5342, skyquilt::buildings::kUnknown), "8.53 m");
   EXPECT_EQ(shown(8.5342, 0.0), "8.53 m");
-  EXPECT_EQ(shown(buildings::kUnknown, 0.1), "\xE2\x80\x93");
+  EXPECT_EQ(shown(skyquilt::buildings::kUnknown, 0.1), "\xE2\x80\x93");
 }
 
 TEST(BuildingsSection, HasMapTableCardsAndPlans) {
   BuildingsPage page(Untrue(MadeTown(3)));
-  buildings::Building& first = page.report.compared.set.buildings[0];
+  skyquilt::buildings::Building& first = page.report.compared.set.buildings[0];
   first.measures.height_m.sigma = 0.1234;
   first.note = "only <seen> from above & far away";
   first.given_id = "<b>12\"";
@@ -118,14 +119,14 @@ TEST(BuildingsSection, HasMapTableCardsAndPlans) {
 }
 
 TEST(BuildingsSection, MarksWhatWasMissedAndInvented) {
-  buildings::BuildingSet set = MadeTown(5);
-  TrueBuildings truth = TruthOf(set);
+  skyquilt::buildings::BuildingSet set = MadeTown(5);
+  buildings::TrueBuildings truth = TruthOf(set);
   truth.outlines[4].inside = false;
   truth.outlines[0].kind = "<house>";
   set.buildings.erase(set.buildings.begin());
-  buildings::HousePlan elsewhere;
+  skyquilt::buildings::HousePlan elsewhere;
   elsewhere.origin = {80.0, 80.0};
-  set.buildings.push_back(buildings::MadeHouse(elsewhere, 77));
+  set.buildings.push_back(skyquilt::buildings::MadeHouse(elsewhere, 77));
   const BuildingsPage page(Compared(set, truth));
   const std::string html = BuildingsSection(page.input);
   ExpectSound(html);
@@ -144,21 +145,21 @@ TEST(BuildingsSection, OnlyTheLargestHaveCards) {
   const BuildingsPage page(Untrue(MadeTown(70)));
   const std::string html = BuildingsSection(page.input);
   ExpectSound(html);
-  EXPECT_EQ(OccurrencesIn(html, "class=\"card photo building\""), kBuildingCards);
+  EXPECT_EQ(OccurrencesIn(html, "class=\"card photo building\""), buildings::kBuildingCards);
   EXPECT_EQ(OccurrencesIn(html, "<tr id=\"building-row-"), 70U);
   EXPECT_NE(html.find("of the 60 largest of 70 buildings"), std::string::npos);
   EXPECT_NE(html.find("48 smaller buildings"), std::string::npos);
   // The map leads to the row of those without.
   EXPECT_EQ(OccurrencesIn(html, "href=\"#building-row-"), 10U);
-  const std::vector<size_t> order = BuildingsWithCards(page.report.compared.set);
+  const std::vector<size_t> order = buildings::BuildingsWithCards(page.report.compared.set);
   for (size_t i = 1; i < order.size(); ++i) {
-    const auto area = [&](size_t k) { return buildings::Area(page.report.compared.set.buildings[order[k]].footprint); };
+    const auto area = [&](size_t k) { return Area(page.report.compared.set.buildings[order[k]].footprint); };
     EXPECT_GE(area(i - 1), area(i) - 1e-9);
   }
 }
 
 TEST(BuildingsSection, WithoutAScaleThereIsNoUnit) {
-  buildings::BuildingSet set = MadeTown(3);
+  skyquilt::buildings::BuildingSet set = MadeTown(3);
   set.metric = false;
   set.scale_source = "unknown";
   set.buildings[0].measures.length_m.sigma = 0.25;
@@ -201,22 +202,22 @@ TEST(BuildingsSection, IsAbsentWhenNoBuildingsWereSearched) {
 }
 
 TEST(BuildingPlan, ShowsTheWallsOfCompoundShapesAndRidges) {
-  buildings::BuildingSet set;
-  buildings::HousePlan flat;
-  flat.roof = buildings::RoofKind::kFlat;
-  const std::string l_shape = BuildingPlan(buildings::MadeLHouse(flat), set);
+  skyquilt::buildings::BuildingSet set;
+  skyquilt::buildings::HousePlan flat;
+  flat.roof = skyquilt::buildings::RoofKind::kFlat;
+  const std::string l_shape = BuildingPlan(skyquilt::buildings::MadeLHouse(flat), set);
   EXPECT_EQ(OccurrencesIn(l_shape, "<text"), 6U) << "each wall of an L";
   EXPECT_EQ(l_shape.find("class=\"ridge\""), std::string::npos);
-  const std::string gable = BuildingPlan(buildings::MadeHouse({}), set);
+  const std::string gable = BuildingPlan(skyquilt::buildings::MadeHouse({}), set);
   EXPECT_EQ(OccurrencesIn(gable, "<text"), 2U);
   EXPECT_NE(gable.find("class=\"ridge\""), std::string::npos);
-  const std::string court = BuildingPlan(buildings::MadeCourtyard(flat, 2.5), set);
+  const std::string court = BuildingPlan(skyquilt::buildings::MadeCourtyard(flat, 2.5), set);
   const size_t walls = court.find("class=\"walls\"");
   EXPECT_EQ(OccurrencesIn(court.substr(walls, court.find("/>", walls) - walls), "Z"), 2U) << "the yard is a hole";
   set.scale = 2.0;
-  EXPECT_NE(BuildingPlan(buildings::MadeHouse({}), set).find("24.00"), std::string::npos) << "a scale bar stretches lengths";
-  EXPECT_EQ(BuildingPlan(buildings::Building{}, set), "");
+  EXPECT_NE(BuildingPlan(skyquilt::buildings::MadeHouse({}), set).find("24.00"), std::string::npos) << "a scale bar stretches lengths";
+  EXPECT_EQ(BuildingPlan(skyquilt::buildings::Building{}, set), "");
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -13,7 +13,7 @@
 #include "tests/evaluate/page/sample_report.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 using Eigen::Vector2d;
@@ -73,13 +73,13 @@ class ControlPage : public testing::Test {
   static std::unique_ptr<TemporaryFolder> shared_folder_;
   static std::unique_ptr<SampleReport> shared_;
   static survey::Survey survey_;
-  static Metrics metrics_;
+  static metrics::Metrics metrics_;
 };
 
 std::unique_ptr<TemporaryFolder> ControlPage::shared_folder_;
 std::unique_ptr<SampleReport> ControlPage::shared_;
 survey::Survey ControlPage::survey_;
-Metrics ControlPage::metrics_;
+metrics::Metrics ControlPage::metrics_;
 
 void ExpectBalanced(const std::string& html) {
   for (const char* tag : {"section", "table", "tbody", "tr", "td", "svg", "figure", "figcaption", "div", "span", "g", "p", "ul", "li", "h3", "b"}) {
@@ -123,10 +123,10 @@ TEST_F(ControlPage, ChecksComeBeforeTags) {
 }
 
 TEST_F(ControlPage, MetricsHaveThePoints) {
-  Metrics metrics = sample_.metrics;
-  EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("control"));
+  metrics::Metrics metrics = sample_.metrics;
+  EXPECT_FALSE(base::ParseJson(metrics::MetricsJson(metrics)).contains("control"));
   metrics.control = SampleControl();
-  const auto json = base::ParseJson(MetricsJson(metrics));
+  const auto json = base::ParseJson(metrics::MetricsJson(metrics));
   EXPECT_EQ(json["control"]["points"].size(), 4U);
   EXPECT_EQ(json["control"]["check"]["rmse_m"][0], 0.04);
 }
@@ -149,16 +149,16 @@ TEST_F(ControlPage, MarksOfAPhotoAreShownWithCrossAndRing) {
   point.error_m.setZero();
   point.marks = {{.photo = photo.name, .pixel = {300.5, 200.5}, .error_px = 2.0, .used = true}, {.photo = "not there.jpg", .pixel = {10.0, 10.0}}};
   base::ThreadPool threads(1);
-  const std::vector<MarkPicture> pictures = WriteMarkPictures(survey, nullptr, folder_.path(), threads);
+  const std::vector<control::MarkPicture> pictures = control::WriteMarkPictures(survey, nullptr, folder_.path(), threads);
   ASSERT_EQ(pictures.size(), 1U);
-  const MarkPicture& picture = pictures[0];
+  const control::MarkPicture& picture = pictures[0];
   EXPECT_EQ(picture.marked_px, Vector2d(32.5, 32.5));
   ASSERT_TRUE(picture.projected_px);
   EXPECT_LT((*picture.projected_px - Vector2d(34.5, 32.5)).norm(), 1e-6);
   EXPECT_TRUE(picture.render.empty());
   const image::Image8 crop = image::LoadRgb8(folder_ / picture.photo);
-  EXPECT_EQ(crop.width, kMarkPicture_px);
-  EXPECT_EQ(crop.height, kMarkPicture_px);
+  EXPECT_EQ(crop.width, control::kMarkPicture_px);
+  EXPECT_EQ(crop.height, control::kMarkPicture_px);
   EXPECT_EQ(crop.At(32, 32)[0], 255);
   EXPECT_EQ(crop.At(31, 32)[0], 40);
   sample_.input.mark_pictures = pictures;
@@ -169,17 +169,17 @@ TEST_F(ControlPage, MarksOfAPhotoAreShownWithCrossAndRing) {
 }
 
 TEST(MarkWindow, StaysInsideThePhoto) {
-  const PictureWindow middle = WindowAround({300.5, 200.5}, 640, 420);
+  const control::PictureWindow middle = control::WindowAround({300.5, 200.5}, 640, 420);
   EXPECT_EQ(middle.left, 268);
   EXPECT_EQ(middle.top, 168);
-  const PictureWindow corner = WindowAround({639.9, 2.0}, 640, 420);
+  const control::PictureWindow corner = control::WindowAround({639.9, 2.0}, 640, 420);
   EXPECT_EQ(corner.left, 576);
   EXPECT_EQ(corner.top, 0);
-  const PictureWindow small = WindowAround({5.0, 5.0}, 32, 400);
+  const control::PictureWindow small = control::WindowAround({5.0, 5.0}, 32, 400);
   EXPECT_EQ(small.left, 0);
   EXPECT_EQ(small.width, 32);
   EXPECT_EQ(small.height, 64);
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 inline size_t CountOf(const std::string& text, const std::string& part) {
   size_t n = 0;
@@ -12,4 +12,4 @@ inline size_t CountOf(const std::string& text, const std::string& part) {
   return n;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

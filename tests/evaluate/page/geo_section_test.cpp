@@ -12,7 +12,7 @@
 #include "tests/evaluate/page/count_of.h"
 #include "tests/evaluate/page/sample_report.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 constexpr const char* kSize = "viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"";
@@ -249,7 +249,7 @@ TEST_F(GeoPage, AnExactFrameIsOnlyComparedWithItsTags) {
   EXPECT_EQ(html.find("Evidence for"), std::string::npos);
   EXPECT_EQ(CountOf(html, "<svg"), 3U) << "map and two charts";
   EXPECT_NE(html.find("Residuals by photo"), std::string::npos);
-  Metrics metrics = sample_->metrics;
+  metrics::Metrics metrics = sample_->metrics;
   metrics.geo_fit = exact.fit;
   ReportInput input = sample_->input;
   input.metrics = &metrics;
@@ -317,4 +317,4 @@ TEST_F(GeoPage, TheBlockMapShowsTagsWithoutHeightToo) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -11,7 +11,7 @@
 #include "tests/evaluate/page/sample_report.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 // As prepare writes it.
@@ -126,4 +126,4 @@ TEST(InputFiles, ThePageHasTheSectionAndAWayToIt) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

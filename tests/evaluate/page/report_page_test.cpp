@@ -13,7 +13,7 @@
 #include "tests/evaluate/page/count_of.h"
 #include "tests/evaluate/page/sample_report.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 // A good and a poor sample for all tests; SKYQUILT_SAMPLE_REPORT=<folder> keeps their pages for a look at them.
@@ -39,7 +39,7 @@ class ReportPage : public testing::Test {
   }
   // Scores by class, and normals of the first photo.
   static void AddSurface() {
-    Metrics& metrics = sample_->metrics;
+    metrics::Metrics& metrics = sample_->metrics;
     metrics.classes = {{"roof", 123456, 789, 0.021, 0.084, 0.093, 0.612, 9.4, 14.2}, {.name = "tree"}};
     metrics.flat_roofs = 14;
     metrics.flat_roof_rms_m = 0.087;
@@ -80,7 +80,7 @@ TEST_F(ReportPage, SurfacesAreScoredByClassWhereTheTruthIsKnown) {
 
 // Columns of the density's and the predicted normals are there only when those were measured.
 TEST_F(ReportPage, NormalsOfTheFieldHaveColumnsWhenTheyWereMeasured) {
-  Metrics metrics;
+  metrics::Metrics metrics;
   metrics.classes = {{.name = "roof"}, {.name = "tree"}};
   const std::string density = "Of the density's normals", head = "Of the predicted normals";
   const auto has = [&](const std::string& column) { return ClassTable(metrics).find(column) != std::string::npos; };
@@ -164,7 +164,7 @@ TEST_F(ReportPage, TheFirstScreenSaysWhereOnEarthOrThatNothingDoes) {
 
 TEST_F(ReportPage, EveryWarningSaysWhatToDo) {
   for (const SampleReport* sample : {sample_.get(), poor_.get()}) {
-    const std::vector<Warning>& warnings = sample->metrics.warnings;
+    const std::vector<metrics::Warning>& warnings = sample->metrics.warnings;
     EXPECT_GE(warnings.size(), 4U);
     const std::string banner = WarningsBanner(sample->metrics);
     EXPECT_NE(BuildReportPage(sample->input).find(banner), std::string::npos);
@@ -260,7 +260,7 @@ TEST_F(ReportPage, LongPausesDoNotSqueezeTheFlights) {
 }
 
 TEST(ReportPageOfNothing, SaysWhatIsMissing) {
-  const Metrics metrics;
+  const metrics::Metrics metrics;
   const survey::Survey survey;
   const partition::BlockSet blocks;
   const scene::TrainReport training;
@@ -321,4 +321,4 @@ TEST(ErrorPicture, PixelsThatDoNotCountAreGrey) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

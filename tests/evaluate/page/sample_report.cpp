@@ -8,7 +8,7 @@
 #include "evaluate/metrics/warnings.h"
 #include "evaluate/page/report_images.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -54,7 +54,8 @@ image::Image8 TownPicture(int width, int height, double west, double north, doub
   return image::ToImage8(picture);
 }
 
-scene::FieldTraining TrainedField(const std::string& name, int block, double seconds, double final_psnr_db, base::Random& random, Curves* curves) {
+scene::FieldTraining TrainedField(const std::string& name, int block, double seconds, double final_psnr_db, base::Random& random,
+                                  metrics::Curves* curves) {
   scene::FieldTraining field;
   field.block = block;
   field.name = name;
@@ -236,7 +237,7 @@ partition::BlockSet TownBlocks(const survey::Survey& survey) {
   return blocks;
 }
 
-scene::TrainReport TrainedBlocks(const partition::BlockSet& blocks, base::Random& random, Curves* curves) {
+scene::TrainReport TrainedBlocks(const partition::BlockSet& blocks, base::Random& random, metrics::Curves* curves) {
   scene::TrainReport training;
   training.ranks = 2;
   training.threads = 4;
@@ -251,8 +252,8 @@ scene::TrainReport TrainedBlocks(const partition::BlockSet& blocks, base::Random
   return training;
 }
 
-PhotoScore ScoreOf(const survey::Survey& survey, int index, base::Random& random) {
-  PhotoScore score;
+photos::PhotoScore ScoreOf(const survey::Survey& survey, int index, base::Random& random) {
+  photos::PhotoScore score;
   score.photo = index;
   score.name = survey.photos[static_cast<size_t>(index)].name;
   score.width = 640;
@@ -286,9 +287,10 @@ PhotoImages PicturesOf(const survey::Photo& photo, const std::filesystem::path& 
 }
 
 // Everything but the scores of photos and blocks.
-void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport& training, Metrics& metrics) {
+void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& blocks, const scene::TrainReport& training,
+                      metrics::Metrics& metrics) {
   std::vector<double> psnr, ssim, flip;
-  for (const PhotoScore& photo : metrics.photos) {
+  for (const photos::PhotoScore& photo : metrics.photos) {
     psnr.push_back(photo.psnr_db);
     ssim.push_back(photo.ssim);
     flip.push_back(photo.flip);
@@ -339,7 +341,7 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.image_width = 640;
   metrics.machine = "8-core laptop, 16 GiB, Linux";
   metrics.date = "2026-01-31T12:00:00Z";
-  metrics.warnings = CollectWarnings(survey, blocks, &training, metrics);
+  metrics.warnings = metrics::CollectWarnings(survey, blocks, &training, metrics);
 }
 
 }  // namespace
@@ -401,7 +403,7 @@ void SampleReport::MakePoor() {
   training.fields[2].ok = false;
   training.fields[2].reason = "loss or gradient was not finite in 20 steps in a row";
   training.fields.pop_back();
-  metrics.warnings = CollectWarnings(survey, blocks, &training, metrics);
+  metrics.warnings = metrics::CollectWarnings(survey, blocks, &training, metrics);
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -4,17 +4,17 @@
 #include <filesystem>
 
 #include "evaluate/metrics/metrics.h"
+#include "evaluate/page/brightness_report.h"
 #include "evaluate/page/report_page.h"
-#include "evaluate/photos/brightness_report.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 struct SampleReport {
-  Metrics metrics;
+  metrics::Metrics metrics;
   survey::Survey survey;
   partition::BlockSet blocks;
   scene::TrainReport training;
-  Curves curves;
+  metrics::Curves curves;
   BrightnessReport brightness;
   ReportInput input;  // points to the members above: do not copy
 
@@ -28,4 +28,4 @@ struct SampleReport {
   void MakePoor();
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

@@ -6,7 +6,7 @@
 #include "evaluate/page/report_page.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 size_t TimesIn(const std::string& text, const std::string& part) {
@@ -17,7 +17,7 @@ size_t TimesIn(const std::string& text, const std::string& part) {
 
 // A report of one photo. Its input points to the members.
 struct SmallReport {
-  Metrics metrics;
+  metrics::Metrics metrics;
   survey::Survey survey;
   partition::BlockSet blocks;
   scene::TrainReport training;
@@ -37,7 +37,7 @@ struct SmallReport {
     images.height = 4;
   }
   void AddSurface() {
-    SurfaceScores& scores = metrics.surface.emplace();
+    surface::SurfaceScores& scores = metrics.surface.emplace();
     scores.psnr = 25.5;
     scores.psnr_field = 26.75;
     scores.pixels = 1000;
@@ -120,4 +120,4 @@ TEST(WritePhotoImages, PictureOfTheMeshIsWrittenWhenThereIsOne) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

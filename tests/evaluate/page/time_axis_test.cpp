@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 TEST(TimeAxis, IsInMinutesWhateverTheOrder) {
@@ -25,4 +25,4 @@ TEST(TimeAxis, CountsPhotosWithoutTimes) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

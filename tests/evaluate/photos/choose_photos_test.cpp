@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 TEST(SelectEvenly, TakesAllOrStandsInTheMiddleOfEqualParts) {
@@ -23,4 +23,4 @@ TEST(HeldOutPhotos, AreThoseNeverTrainedOn) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -8,7 +8,7 @@
 #include "tests/evaluate/photos/nadir_view.h"
 #include "tests/support/not_finite.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 TEST(SurfacePoint, KeepsADepthInsideTheHeights) {
@@ -83,4 +83,4 @@ TEST(TrainingViews, FoldedDistortionIsNotSeen) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -12,7 +12,7 @@
 #include "tests/evaluate/photos/nadir_view.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 using Eigen::Vector2d;
@@ -178,4 +178,4 @@ RC_GTEST_PROP(SpreadAboutPlane, DoesNotDependOnThePlaneOrTheYaw, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -10,7 +10,7 @@
 #include "tests/support/nadir_photo.h"
 #include "tests/support/not_finite.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 constexpr int kFullWidth = 200;
@@ -130,4 +130,4 @@ TEST_F(KeptPointsTest, NothingIsMeasuredWithoutRaysAndNoMedianIsInfinite) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

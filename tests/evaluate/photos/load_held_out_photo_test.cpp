@@ -9,7 +9,7 @@
 #include "tests/evaluate/photos/nadir_view.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 // A survey of one photo in a sub-folder, with true depth, normals and classes of other sizes than the photo.
@@ -71,4 +71,4 @@ TEST(LoadHeldOutPhoto, WithoutATruthThereIsNone) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -3,7 +3,7 @@
 
 #include "evaluate/photos/coverage.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 
 // From (x, y, height): image x east, image y south, 100 x 80 pixels. From 100 m up, a pixel is a metre of ground.
 inline TrainingView NadirView(double x, double y, double height_m) {
@@ -19,4 +19,4 @@ inline TrainingView NadirView(double x, double y, double height_m) {
   return view;
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

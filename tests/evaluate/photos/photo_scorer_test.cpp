@@ -7,7 +7,7 @@
 
 #include "tests/evaluate/photos/nadir_view.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 constexpr int kScoredWidth = 100, kScoredHeight = 80;
@@ -62,8 +62,8 @@ TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
   ASSERT_EQ(findings.per_block.size(), 2U);
   EXPECT_EQ(PixelsOf(findings.per_block[0]), 50 * kScoredHeight);
   EXPECT_EQ(PixelsOf(findings.per_block[1]), 50 * kScoredHeight);
-  EXPECT_NEAR(metrics::PsnrOf(findings.per_block[0]), Psnr(10.0), 1e-3);
-  EXPECT_NEAR(metrics::PsnrOf(findings.per_block[1]), Psnr(20.0), 1e-3);
+  EXPECT_NEAR(skyquilt::metrics::PsnrOf(findings.per_block[0]), Psnr(10.0), 1e-3);
+  EXPECT_NEAR(skyquilt::metrics::PsnrOf(findings.per_block[1]), Psnr(20.0), 1e-3);
   EXPECT_EQ(PixelsOf(findings.seams.AllSeam()), 10 * kScoredHeight);                 // 5 m on either side
   EXPECT_EQ(PixelsOf(findings.seams.AllInterior()), 2 * 40 * (kScoredHeight - 10));  // without seam and rim
 }
@@ -149,4 +149,4 @@ TEST(ScorePhoto, NonFiniteRenderedColoursAreBlackNotNan) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
 // Two blocks of 100 m x 100 m, west and east, with 10 m margins.
@@ -44,16 +44,16 @@ TEST(ZoneAt, SingleBlockHasNoSeam) {
 }
 
 TEST(AddPixel, PsnrOfAKnownDifference) {
-  metrics::SquaredError error;
-  EXPECT_TRUE(std::isnan(metrics::PsnrOf(error)));
+  skyquilt::metrics::SquaredError error;
+  EXPECT_TRUE(std::isnan(skyquilt::metrics::PsnrOf(error)));
   const float a[3] = {0.5F, 0.5F, 0.5F};
   const float b[3] = {0.6F, 0.6F, 0.6F};
   AddPixel(a, b, &error);
-  EXPECT_NEAR(metrics::PsnrOf(error), 20.0, 1e-4);  // mean squared error 0.01
+  EXPECT_NEAR(skyquilt::metrics::PsnrOf(error), 20.0, 1e-4);  // mean squared error 0.01
   AddPixel(a, a, &error);
-  EXPECT_NEAR(metrics::PsnrOf(error), 20.0 + 10.0 * std::log10(2.0), 1e-4);
+  EXPECT_NEAR(skyquilt::metrics::PsnrOf(error), 20.0 + 10.0 * std::log10(2.0), 1e-4);
   EXPECT_EQ(PixelsOf(error), 2);
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

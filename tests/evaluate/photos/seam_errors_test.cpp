@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::photos {
 namespace {
 
-metrics::SquaredError Errors(double mean, int64_t n_values) {
+skyquilt::metrics::SquaredError Errors(double mean, int64_t n_values) {
   return {mean * static_cast<double>(n_values), n_values};
 }
 
@@ -19,7 +19,7 @@ TEST(SeamErrors, EqualQualityPerTextureIsNoGap) {
   errors.seam[0] = Errors(1e-4, 30);
   errors.seam[5] = Errors(1e-3, 900);
   EXPECT_NEAR(errors.GapDb(), 0.0, 1e-9);
-  EXPECT_GT(metrics::PsnrOf(errors.AllInterior()) - metrics::PsnrOf(errors.AllSeam()), 5.0);
+  EXPECT_GT(skyquilt::metrics::PsnrOf(errors.AllInterior()) - skyquilt::metrics::PsnrOf(errors.AllSeam()), 5.0);
 }
 
 TEST(SeamErrors, SeesWorseSeams) {
@@ -70,4 +70,4 @@ TEST(TextureClass, DoublesFromClassToClass) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::photos

@@ -6,7 +6,7 @@
 
 #include "tests/evaluate/surface/surface_sample.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 using survey::SurfaceClass;
@@ -17,7 +17,7 @@ constexpr double kOpenDeck_m2 = 180.0 - 13.6;
 // A flat roof of 20 m x 12 m at height 10 with a machine of 2 m x 2 m on it, ground around.
 struct FlatRoof {
   TrueSurface truth;
-  RoofArea area{{0, 0}, {1, 0}, {9.0, 5.0}};
+  photos::RoofArea area{{0, 0}, {1, 0}, {9.0, 5.0}};
   base::ThreadPool threads{2};
 
   FlatRoof() {
@@ -29,7 +29,7 @@ struct FlatRoof {
     const raytrace::TracedScene traced_mesh(mesh.position, mesh.triangle), traced_truth(truth.position, truth.triangle);
     const auto samples = SampleSurface(
         mesh.position, mesh.triangle, [](uint32_t) { return true; }, 0.01, 100000);
-    return ScoreDecks(mesh, samples, truth, traced_mesh, traced_truth, std::vector<RoofArea>{area}, 0.1, threads);
+    return ScoreDecks(mesh, samples, truth, traced_mesh, traced_truth, std::vector<photos::RoofArea>{area}, 0.1, threads);
   }
 };
 
@@ -42,16 +42,16 @@ TEST(ScoreDecks, AMeshAtTheHeightOfTheDeckIsRight) {
 
 TEST(ScoreDecks, ATiltedMeshIsRightInTheMiddleOnly) {
   FlatRoof roof;
-  surface::TexturedTile tile = PlateTile({-10, -6, 10, 6, 10.0});
+  skyquilt::surface::TexturedTile tile = PlateTile({-10, -6, 10, 6, 10.0});
   for (Eigen::Vector3d& p : tile.position) p.z() += 0.04 * p.x();
-  std::vector<surface::TexturedTile> tiles = {tile};
+  std::vector<skyquilt::surface::TexturedTile> tiles = {tile};
   // Within 0.1 m where |x| < 2.5 m.
   EXPECT_NEAR(roof.Score(SurfaceMesh(tiles)).share_within, 5.0 * 10.0 / kOpenDeck_m2, 0.03);
 }
 
 TEST(ScoreDecks, OnlyWhatFacesUpCounts) {
   FlatRoof roof;
-  surface::TexturedTile floating = PlateTile({-10, -6, 10, 6, 11.0}), wall = PlateTile({-10, -6, 10, 6, 10.0});
+  skyquilt::surface::TexturedTile floating = PlateTile({-10, -6, 10, 6, 11.0}), wall = PlateTile({-10, -6, 10, 6, 10.0});
   for (Eigen::Vector3d& p : wall.position) p = {p.x(), -3.0, 10.0 + p.y()};
   EXPECT_EQ(roof.Score(SurfaceMesh({PlateTile({-10, -6, 10, 6, 10.0}), wall})).share_within, 1.0);
   EXPECT_NEAR(roof.Score(SurfaceMesh({PlateTile({-10, -6, 10, 6, 10.0}), floating})).share_within, 0.5, 0.01);
@@ -70,7 +70,7 @@ TEST(ScoreDecks, RoofsThatAreMovedWithTheSurveyAreFound) {
   roof.truth.survey_from_truth = {Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ())), {100, 50, -3}};
   for (Eigen::Vector3f& p : roof.truth.position) p = (roof.truth.survey_from_truth.rotation * p.cast<double>()).cast<float>();
   roof.truth.middle = roof.truth.survey_from_truth.translation;
-  surface::TexturedTile tile = PlateTile({-10, -6, 10, 6, 10.0});
+  skyquilt::surface::TexturedTile tile = PlateTile({-10, -6, 10, 6, 10.0});
   for (Eigen::Vector3d& p : tile.position) p = roof.truth.survey_from_truth * p;
   const DeckScore score = roof.Score(SurfaceMesh({tile}));
   EXPECT_EQ(score.share_within, 1.0);
@@ -85,4 +85,4 @@ TEST(ScoreDecks, WithoutDecksOrMeshNothingIsMeasured) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

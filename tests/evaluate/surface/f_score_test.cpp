@@ -9,7 +9,7 @@
 #include "tests/evaluate/photos/nadir_view.h"
 #include "tests/evaluate/surface/surface_sample.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 using survey::SurfaceClass;
@@ -20,7 +20,7 @@ constexpr Plate kGround{-10, -8, -4, 8, 0.0}, kRoad{-4, -8, 0, 8, 0.0}, kRoof{0,
 // Ground and road in the west, a roof in the east, seen by two photos from 100 m up whose frames hold all of it.
 struct Place {
   TrueSurface truth;
-  std::vector<TrainingView> training = {NadirView(0, 0, 100), NadirView(1, 0, 100)};
+  std::vector<photos::TrainingView> training = {NadirView(0, 0, 100), NadirView(1, 0, 100)};
   std::vector<geo::BlockBox> boxes = {{{-10, -8, -5}, {10, 8, 20}, 2.0}};
   base::ThreadPool threads{2};
 
@@ -31,7 +31,7 @@ struct Place {
     AddPlate(kRoof, SurfaceClass::kRoof, &truth);
   }
   SurfaceComparison Compare(const SurfaceMesh& mesh, base::ThreadPool* with = nullptr) {
-    const TrainingViews views(training);
+    const photos::TrainingViews views(training);
     const SeenSurface seen(truth, training, views, boxes);
     const SurfacePair pair{mesh, truth, seen, boxes, kGsd_m};
     return CompareSurfaces(pair, SampleMesh(pair), with == nullptr ? threads : *with);
@@ -189,4 +189,4 @@ TEST(SampleSurface, PointsAreSpreadByArea) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

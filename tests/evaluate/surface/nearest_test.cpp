@@ -8,7 +8,7 @@
 
 #include "core/base/random.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 using Eigen::Vector3d;
@@ -90,4 +90,4 @@ RC_GTEST_PROP(NearestOnTriangle, NoOtherPointOfTheTriangleIsNearer, ()) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

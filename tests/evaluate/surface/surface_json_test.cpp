@@ -10,7 +10,7 @@
 #include "evaluate/metrics/metrics.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 SurfaceScores SomeScores() {
@@ -34,10 +34,10 @@ SurfaceScores SomeScores() {
 }
 
 TEST(SurfaceJson, IsPartOfTheMetricsAndReadBack) {
-  Metrics metrics;
-  EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("surface"));
+  metrics::Metrics metrics;
+  EXPECT_FALSE(base::ParseJson(metrics::MetricsJson(metrics)).contains("surface"));
   metrics.surface = SomeScores();
-  const std::string text = MetricsJson(metrics);
+  const std::string text = metrics::MetricsJson(metrics);
   const auto json = base::ParseJson(text).at("surface");
   EXPECT_EQ(json["psnr"], 25.5);
   EXPECT_EQ(json["missing_share"], 0.015625);
@@ -55,9 +55,9 @@ TEST(SurfaceJson, IsPartOfTheMetricsAndReadBack) {
 
   const TemporaryFolder folder;
   base::WriteFileAtomically(folder / "metrics.json", text);
-  const Metrics back = ReadMetrics(folder / "metrics.json");
+  const metrics::Metrics back = metrics::ReadMetrics(folder / "metrics.json");
   ASSERT_TRUE(back.surface.has_value());
-  EXPECT_EQ(MetricsJson(back), text);
+  EXPECT_EQ(metrics::MetricsJson(back), text);
   EXPECT_EQ(back.surface->record.boundary_edges, -1);
   EXPECT_EQ(back.surface->classes[0].agreement.f_scores.size(), 2U);
 }
@@ -90,4 +90,4 @@ TEST(SurfaceRecord, WhatIsMissingOrDamagedIsNotShown) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

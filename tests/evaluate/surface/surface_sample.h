@@ -9,7 +9,7 @@
 #include "evaluate/surface/joined_mesh.h"
 #include "evaluate/surface/true_surface.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 
 // Level rectangle seen from above, ENU metres.
 struct Plate {
@@ -28,8 +28,8 @@ inline void AddPlate(const Plate& plate, survey::SurfaceClass class_of, TrueSurf
 }
 
 // A tile of one plate, facing up; its texture covers it, north up.
-inline surface::TexturedTile PlateTile(const Plate& plate) {
-  surface::TexturedTile tile;
+inline skyquilt::surface::TexturedTile PlateTile(const Plate& plate) {
+  skyquilt::surface::TexturedTile tile;
   tile.position = {
       {plate.west, plate.south, plate.z}, {plate.east, plate.south, plate.z}, {plate.east, plate.north, plate.z}, {plate.west, plate.north, plate.z}};
   tile.uv = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
@@ -38,9 +38,9 @@ inline surface::TexturedTile PlateTile(const Plate& plate) {
 }
 
 inline SurfaceMesh MeshOf(const std::vector<Plate>& plates) {
-  std::vector<surface::TexturedTile> tiles;
+  std::vector<skyquilt::surface::TexturedTile> tiles;
   for (const Plate& plate : plates) tiles.push_back(PlateTile(plate));
   return SurfaceMesh(std::move(tiles));
 }
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

@@ -10,7 +10,7 @@
 #include "core/survey/surface_class.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::surface {
 namespace {
 
 // As simulate/surface_mesh.cpp writes it.
@@ -75,4 +75,4 @@ TEST_F(TrueSurfaceFile, DamageIsNoticed) {
 }
 
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::surface

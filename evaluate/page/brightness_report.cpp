@@ -1,4 +1,4 @@
-#include "evaluate/photos/brightness_report.h"
+#include "evaluate/page/brightness_report.h"
 
 #include <fmt/core.h>
 
@@ -13,9 +13,9 @@
 #include "core/brightness/captured_photos.h"
 #include "core/brightness/predict_gains.h"
 #include "core/image/srgb.h"
-#include "core/page/html.h"
+#include "evaluate/page/page_parts.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 namespace {
 
@@ -98,8 +98,8 @@ std::vector<VignettingCurve> VignettingOfCameras(const std::vector<float>& vigne
 
 std::string LuminanceSentence(const scene::SceneInfo& info) {
   if (!info.luminance.On()) return "";
-  const std::string target = page::FormatFixed(info.luminance.target, 2);
-  const std::string omega = page::FormatFixed(info.luminance_state.mean_log_gain / std::numbers::ln2, 2, "stops");
+  const std::string target = FormatFixed(info.luminance.target, 2);
+  const std::string omega = FormatFixed(info.luminance_state.mean_log_gain / std::numbers::ln2, 2, "stops");
   if (info.luminance.mode == brightness::LuminanceMode::kUnder) {
     return fmt::format(
         "The survey as a whole is too dark. The scene at normal exposure is brightened to a mean display value of {}; a learned concealing field "
@@ -187,11 +187,4 @@ std::vector<int> ChooseViews(const scene::SceneInfo& info, const survey::Survey&
   return {std::abs(stops(*darkest)) > std::abs(stops(*brightest)) ? *darkest : *brightest};
 }
 
-image::Image8 PictureOf(std::span<const render::RayColor> colors, int width, int height) {
-  SKYQUILT_CHECK(colors.size() == static_cast<size_t>(width) * static_cast<size_t>(height), "one colour per pixel");
-  image::ImageF picture(width, height, 3);
-  for (size_t i = 0; i < colors.size(); ++i) std::copy_n(colors[i].rgb_srgb, 3, picture.data.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  return image::ToImage8(picture);
-}
-
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

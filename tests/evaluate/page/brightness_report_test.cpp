@@ -1,4 +1,4 @@
-#include "evaluate/photos/brightness_report.h"
+#include "evaluate/page/brightness_report.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "core/image/srgb.h"
 #include "tests/support/temporary_folder.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 namespace {
 
 constexpr int kPhotoWidth = 64, kPhotoHeight = 48;
@@ -164,13 +164,5 @@ TEST(ChooseViews, TakesDarkestAndBrightestThatDiffer) {
   EXPECT_TRUE(ChooseViews(info, survey, {}).empty());
 }
 
-TEST(PictureOf, IsClampedAndNeverNan) {
-  std::vector<render::RayColor> colors(2);
-  colors[0].rgb_srgb[0] = 2.0F;
-  colors[1].rgb_srgb[2] = std::numeric_limits<float>::quiet_NaN();
-  const image::Image8 picture = PictureOf(colors, 2, 1);
-  EXPECT_EQ(picture.data, (std::vector<uint8_t>{255, 0, 0, 0, 0, 0}));
-}
-
 }  // namespace
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

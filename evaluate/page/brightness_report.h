@@ -3,17 +3,15 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "core/image/image.h"
 #include "core/image/pixel_cache.h"
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
-#include "evaluate/metrics/metrics.h"
+#include "evaluate/measured.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::page {
 
 struct BrightnessPhoto {
   std::string name;
@@ -65,7 +63,4 @@ double ExposureStops(const brightness::Response& response, size_t photo);
 // farthest from it. Empty when held_out is empty or the scene has no gains of the photos.
 std::vector<int> ChooseViews(const scene::SceneInfo& info, const survey::Survey& survey, const std::vector<int>& held_out);
 
-// Rendered colours as an image. colors: row-major, width * height.
-image::Image8 PictureOf(std::span<const render::RayColor> colors, int width, int height);
-
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::page

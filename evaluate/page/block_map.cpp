@@ -69,16 +69,15 @@ std::string GpsTracks(const ReportInput& input, const DrawnMap& frame) {
   const std::vector<std::optional<control::TagPosition>> tags = control::TagPositions(*input.survey);
   std::string svg = "<g class=\"layer-gps\">";
   for (const auto& [flight, photos] : control::PhotosByFlight(*input.survey)) {
-    std::string line, marks;
+    std::vector<Eigen::Vector2d> points_px;
+    std::string marks;
     for (const size_t i : photos) {
       if (!tags[i]) continue;
-      const double x = frame.X(tags[i]->recorded.x()), y = frame.Y(tags[i]->recorded.y());
-      line += fmt::format("{:.1f},{:.1f} ", x, y);
-      marks += fmt::format("M{:.1f} {:.1f}h6m-3 -3v6", x - 3.0, y);
+      const Eigen::Vector2d& at = points_px.emplace_back(frame.Pixel(tags[i]->recorded));
+      marks += fmt::format("M{:.1f} {:.1f}h6m-3 -3v6", at.x() - 3.0, at.y());
     }
-    if (line.empty()) continue;
-    svg += fmt::format("<polyline class=\"track\" points=\"{}\"><title>GPS tags of flight {}</title></polyline><path class=\"tag\" d=\"{}\"/>", line,
-                       flight + 1, marks);
+    if (points_px.empty()) continue;
+    svg += TrackLine("track", points_px, fmt::format("GPS tags of flight {}", flight + 1)) + "<path class=\"tag\" d=\"" + marks + "\"/>";
   }
   return svg + "</g>";
 }
@@ -115,13 +114,7 @@ std::string BlockMapSvg(const ReportInput& input) {
   std::string svg =
       fmt::format("<svg id=\"map\" class=\"map{}\" viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"Map of blocks and cameras\">",
                   input.background ? " over-image" : "", frame.width_px(), frame.height_px());
-  if (input.background) {
-    const MapBackground& background = *input.background;
-    svg += fmt::format(
-        "<image class=\"layer-ortho\" href=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" preserveAspectRatio=\"none\"/>",
-        EscapeHtml(background.image), frame.X(background.min_enu.x()), frame.Y(background.max_enu.y()),
-        (background.max_enu.x() - background.min_enu.x()) * frame.scale(), (background.max_enu.y() - background.min_enu.y()) * frame.scale());
-  }
+  if (input.background) svg += BackgroundImage(frame, *input.background, "layer-ortho");
   svg += Blocks(input, frame) + GpsTracks(input, frame) + Cameras(input, frame) + BlockLabels(input, frame) +
          ScaleBarAndNorth(frame, input.survey->georeferenced);
   return svg + "</svg>\n";

@@ -212,8 +212,8 @@ std::string SpreadSentences(const BrightnessReport& brightness) {
 }
 
 std::string ViewCard(const BrightnessView& view) {
-  std::string html = "<article class=\"card photo\"><header><h3>" + EscapeHtml(view.name) + "</h3><div class=\"chips\">" +
-                     Chip("exposure", SignedFixed(view.stops, 2, "stops")) + "</div></header><div class=\"pics three\">";
+  std::string html = "<article class=\"card photo\"><header><h3>" + EscapeHtml(view.name) + "</h3>" +
+                     Chips(Chip("exposure", SignedFixed(view.stops, 2, "stops"))) + "</header><div class=\"pics three\">";
   html += Picture("taken-pic", view.photo, view.width, view.height, "Photo as taken");
   html += Picture("recorded-pic", view.recorded, view.width, view.height, "Scene at the exposure of this photo");
   html += Picture("normal-pic", view.normal, view.width, view.height, "Scene at normal exposure");
@@ -227,15 +227,16 @@ std::string BrightnessSection(const ReportInput& input) {
   const BrightnessReport& brightness = *input.brightness;
   const auto [low, high] = std::minmax_element(brightness.photos.begin(), brightness.photos.end(),
                                                [](const auto& a, const auto& b) { return a.exif_stops < b.exif_stops; });
-  std::string html = "<section id=\"brightness\"><div class=\"heading\"><h2>Brightness</h2><div class=\"chips\">";
-  html += Chip("variation between photos",
-               FormatFixed(brightness.spread_before_stops, 2) + " \xE2\x86\x92 " + FormatFixed(brightness.spread_after_stops, 2, "stops"), "main");
+  std::string chips =
+      Chip("variation between photos",
+           FormatFixed(brightness.spread_before_stops, 2) + " \xE2\x86\x92 " + FormatFixed(brightness.spread_after_stops, 2, "stops"), "main");
   if (Learned(brightness) && high->exif_stops - low->exif_stops >= kAlikeStops) {
-    html += Chip("trust in the tags", FormatPercent(brightness.trust_in_tags, 0));
+    chips += Chip("trust in the tags", FormatPercent(brightness.trust_in_tags, 0));
   }
-  html += "</div></div><p class=\"lead\">" + TagSentences(brightness, low->exif_stops, high->exif_stops) + SpreadSentences(brightness) +
-          EscapeHtml(brightness.luminance) + "</p><div class=\"chart-grid\">" + GainChart(brightness);
-  html += HistogramChart(brightness, brightness.vignetting.empty());
+  const std::string lead =
+      TagSentences(brightness, low->exif_stops, high->exif_stops) + SpreadSentences(brightness) + EscapeHtml(brightness.luminance);
+  std::string html = SectionBegin("brightness", "Brightness", Chips(chips)) + Lead(lead) + "<div class=\"chart-grid\">" + GainChart(brightness) +
+                     HistogramChart(brightness, brightness.vignetting.empty());
   if (!brightness.vignetting.empty()) html += VignettingChart(brightness);
   html += "</div>";
   if (!brightness.views.empty()) {

@@ -23,15 +23,15 @@ std::string FateChip(const buildings::BuildingsReport& report, size_t index) {
     case buildings::FoundFate::kMatched:
       return "";
     case buildings::FoundFate::kInvented:
-      return "<span class=\"state bad\">invented</span>";
+      return State("bad", "invented");
     case buildings::FoundFate::kNotCounted:
-      return "<span class=\"state idle\">not counted</span>";
+      return State("idle", "not counted");
   }
   return "";
 }
 
 std::string StateOf(const skyquilt::buildings::Building& building) {
-  return building.accepted ? "<span class=\"state good\">fits</span>" : "<span class=\"state warn\">fits poorly</span>";
+  return building.accepted ? State("good", "fits") : State("warn", "fits poorly");
 }
 
 std::string FactsOf(const buildings::BuildingsReport& report, size_t index) {
@@ -75,7 +75,7 @@ std::string CardOf(const buildings::BuildingsReport& report, size_t index) {
     html += "<p class=\"empty\">No photo shows it.</p>";
   }
   html += "<figure class=\"plan-figure\">" + BuildingPlan(building, report.compared.set) + "</figure>" + FactsOf(report, index) + "</div>";
-  if (!building.note.empty()) html += "<p class=\"note\">Note: " + EscapeHtml(building.note) + ".</p>";
+  if (!building.note.empty()) html += Note("Note: " + EscapeHtml(building.note) + ".");
   return html + "</article>\n";
 }
 
@@ -93,8 +93,8 @@ std::string BuildingCards(const buildings::BuildingsReport& report) {
     html += "</div></details>";
   }
   if (order.size() < report.compared.set.buildings.size()) {
-    html += fmt::format("<p class=\"note\">Pictures and plans are shown of the {} largest of {} buildings; the table has all of them.</p>",
-                        order.size(), report.compared.set.buildings.size());
+    html += Note(fmt::format("Pictures and plans are shown of the {} largest of {} buildings; the table has all of them.", order.size(),
+                             report.compared.set.buildings.size()));
   }
   return html;
 }
@@ -106,13 +106,12 @@ std::string BuildingsTable(const buildings::BuildingsReport& report) {
   const buildings::BuildingMatches& matches = report.compared.matches;
   std::vector<bool> carded(set.buildings.size());
   for (const size_t index : buildings::BuildingsWithCards(set)) carded[index] = true;
-  std::string html =
-      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th class=\"num\">Building</th><th>Roof</th><th class=\"num\">Height</th>"
-      "<th class=\"num\">Length</th><th class=\"num\">Width</th><th class=\"num\">Footprint</th><th class=\"num\">Volume</th><th class=\"num\">"
-      "Ground</th><th class=\"num\">Eave</th><th class=\"num\">Ridge or deck</th><th class=\"num\">Direction</th><th class=\"num\">Pitch</th>"
-      "<th class=\"num\">Roof area</th><th class=\"num\">Walls seen</th><th class=\"num\">Within 2 GSD</th><th>Model</th>";
-  if (report.compared.truth) html += "<th>Truth</th><th class=\"num\">Overlap</th>";
-  html += "<th>Note</th></tr></thead><tbody>";
+  std::string columns = NumberHeadings({"Building"}) + Headings({"Roof"}) +
+                        NumberHeadings({"Height", "Length", "Width", "Footprint", "Volume", "Ground", "Eave", "Ridge or deck", "Direction", "Pitch",
+                                        "Roof area", "Walls seen", "Within 2 GSD"}) +
+                        Headings({"Model"});
+  if (report.compared.truth) columns += Headings({"Truth"}) + NumberHeadings({"Overlap"});
+  std::string html = TableBegin(columns + Headings({"Note"}));
   for (size_t i = 0; i < set.buildings.size(); ++i) {
     const skyquilt::buildings::Building& building = set.buildings[i];
     const skyquilt::buildings::Measures& measures = building.measures;
@@ -123,17 +122,16 @@ std::string BuildingsTable(const buildings::BuildingsReport& report) {
             MeasureCell(measures.volume_m3, units.volume) + MeasureCell(OnMap(report, i, measures.ground_m), units.length) +
             MeasureCell(OnMap(report, i, measures.eave_m), units.length) + MeasureCell(OnMap(report, i, measures.ridge_m), units.length) +
             MeasureCell(measures.yaw_deg, kDegree) + MeasureCell(measures.pitch_deg, kDegree) + MeasureCell(measures.roof_m2, units.area) +
-            NumberCell(measures.wall_seen, FormatPercent(measures.wall_seen, 0)) +
-            NumberCell(building.share_within, FormatPercent(building.share_within, 0)) + "<td>" + StateOf(building) + "</td>";
+            PercentCell(measures.wall_seen, 0) + PercentCell(building.share_within, 0) + "<td>" + StateOf(building) + "</td>";
     if (report.compared.truth) {
       const std::optional<size_t> pair = matches.pair_of_found[i];
       const double overlap = pair ? matches.pairs[*pair].overlap : kNotMeasured;
       html += "<td>" + (pair ? fmt::format("outline {}", report.compared.truth->outlines[matches.pairs[*pair].truth].id) : FateChip(report, i)) +
-              "</td>" + NumberCell(overlap, FormatPercent(overlap, 0));
+              "</td>" + PercentCell(overlap, 0);
     }
     html += TextCell(building.note) + "</tr>";
   }
-  return html + "</tbody></table></div>\n";
+  return html + kTableEnd + "\n";
 }
 
 }  // namespace skyquilt::evaluate::page

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/page/figure.h"
 #include "evaluate/page/building_numbers.h"
 #include "evaluate/page/buildings_section.h"
 #include "evaluate/page/drawn_map.h"
@@ -47,12 +48,10 @@ class BuildingsMapDrawing {
   }
 
   std::string Figure() const {
-    return fmt::format(
-               "<figure class=\"card map-card\"><svg class=\"map building-map{}\" viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"Map of the "
-               "buildings\">",
-               input_.background ? " over-image" : "", frame_.width_px(), frame_.height_px()) +
-           Orthophoto() + Outlines(buildings::TrueFate::kNotCounted, "uncounted") + Footprints() + Outlines(buildings::TrueFate::kMissed, "missed") +
-           Numbers() + ScaleBarAndNorth(frame_, input_.survey->georeferenced) + "</svg>" + Caption() + "</figure>\n";
+    return MapFigureBegin(frame_, input_.background ? "building-map over-image" : "building-map", "Map of the buildings") +
+           (input_.background ? BackgroundImage(frame_, *input_.background) : "") + Outlines(buildings::TrueFate::kNotCounted, "uncounted") +
+           Footprints() + Outlines(buildings::TrueFate::kMissed, "missed") + Numbers() + ScaleBarAndNorth(frame_, input_.survey->georeferenced) +
+           MapFigureEnd(Legend());
   }
 
  private:
@@ -79,14 +78,6 @@ class BuildingsMapDrawing {
     add(polygon.outer);
     for (const std::vector<Eigen::Vector2d>& hole : polygon.holes) add(hole);
     return path;
-  }
-
-  std::string Orthophoto() const {
-    if (!input_.background) return "";
-    const MapBackground& background = *input_.background;
-    const Eigen::Vector2d size = (background.max_enu - background.min_enu) * frame_.scale();
-    return fmt::format("<image href=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" preserveAspectRatio=\"none\"/>",
-                       EscapeHtml(background.image), frame_.X(background.min_enu.x()), frame_.Y(background.max_enu.y()), size.x(), size.y());
   }
 
   buildings::FoundFate FateOf(size_t index) const { return matches_.found.empty() ? buildings::FoundFate::kMatched : matches_.found[index]; }
@@ -142,7 +133,7 @@ class BuildingsMapDrawing {
     return svg;
   }
 
-  std::string Caption() const {
+  std::string Legend() const {
     std::string legend;
     if (low_ <= high_) {
       std::string colors;
@@ -152,18 +143,16 @@ class BuildingsMapDrawing {
       legend += fmt::format("<span class=\"ramp\">height {}<i style=\"background:linear-gradient(90deg,{})\"></i>{}</span>", FormatFixed(low_, 1),
                             colors, FormatFixed(high_, 1, units_.length));
     }
-    const auto entry = [&](const char* css_class, const char* name) {
-      legend += fmt::format("<span><i class=\"{}\"></i>{}</span>", css_class, name);
-    };
     if (std::any_of(set_.buildings.begin(), set_.buildings.end(), [](const skyquilt::buildings::Building& b) { return !b.accepted; })) {
-      entry("k-unsure", "the model does not fit well");
+      legend += LegendEntry("k-unsure", "the model does not fit well");
     }
-    if (std::count(matches_.truth.begin(), matches_.truth.end(), buildings::TrueFate::kMissed) > 0) entry("k-missed", "true outline that was missed");
+    if (std::count(matches_.truth.begin(), matches_.truth.end(), buildings::TrueFate::kMissed) > 0)
+      legend += LegendEntry("k-missed", "true outline that was missed");
     if (std::count(matches_.found.begin(), matches_.found.end(), buildings::FoundFate::kInvented) > 0)
-      entry("k-invented", "invented: no such building");
+      legend += LegendEntry("k-invented", "invented: no such building");
     if (std::count(matches_.truth.begin(), matches_.truth.end(), buildings::TrueFate::kNotCounted) > 0)
-      entry("k-uncounted", "true outline that does not count");
-    return "<figcaption><div class=\"legend\">" + legend + "</div></figcaption>";
+      legend += LegendEntry("k-uncounted", "true outline that does not count");
+    return legend;
   }
 
   const ReportInput& input_;

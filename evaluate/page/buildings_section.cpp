@@ -10,14 +10,6 @@
 namespace skyquilt::evaluate::page {
 namespace {
 
-std::string CountCell(int64_t count) {
-  return NumberCell(static_cast<double>(count), FormatInteger(count));
-}
-
-std::string PartCell(double share) {
-  return NumberCell(share, FormatPercent(share));
-}
-
 // "10 to 50 m2" as "10 to 50 m²".
 std::string ShownSize(std::string size) {
   if (size.ends_with("m2")) size.replace(size.size() - 1, 1, "\xC2\xB2");
@@ -26,26 +18,23 @@ std::string ShownSize(std::string size) {
 
 std::string DetectionTable(const buildings::BuildingTruthScores& truth) {
   std::string html =
-      "<div class=\"block\"><h3>Found and missed</h3><p class=\"lead\">A building is found when its footprint and that of a true outline share at "
-      "least "
-      "half of what either covers. Completeness is the share of the true that was found, correctness the share of the found that is true, and "
-      "quality "
-      "what is both over what is either; per building, then per area. Outlines below 10 m\xC2\xB2 or not wholly inside the surveyed area count "
-      "neither "
-      "as missed nor as found.</p><div class=\"card scroll\"><table><thead><tr><th>Size</th><th class=\"num\">True outlines</th><th "
-      "class=\"num\">Found"
-      "</th><th class=\"num\">Missed</th><th class=\"num\">Invented</th><th class=\"num\">Completeness</th><th class=\"num\">Correctness</th>"
-      "<th class=\"num\">Quality</th><th class=\"num\">Completeness, area</th><th class=\"num\">Correctness, area</th><th class=\"num\">Quality, area"
-      "</th></tr></thead><tbody>";
+      BlockBegin(
+          "Found and missed",
+          "A building is found when its footprint and that of a true outline share at least half of what either covers. Completeness is the share of "
+          "the true that was found, correctness the share of the found that is true, and quality what is both over what is either; per building, "
+          "then per area. Outlines below 10 m\xC2\xB2 or not wholly inside the surveyed area count neither as missed nor as found.") +
+      TableBegin(Headings({"Size"}) + NumberHeadings({"True outlines", "Found", "Missed", "Invented", "Completeness", "Correctness", "Quality",
+                                                      "Completeness, area", "Correctness, area", "Quality, area"}),
+                 "");
   for (const buildings::BuildingDetection& score : truth.detection) {
     html += "<tr>" + TextCell(ShownSize(score.size)) + CountCell(score.outlines) + CountCell(score.matched) + CountCell(score.missed) +
-            CountCell(score.invented) + PartCell(score.completeness) + PartCell(score.correctness) + PartCell(score.quality) +
-            PartCell(score.completeness_area) + PartCell(score.correctness_area) + PartCell(score.quality_area) + "</tr>";
+            CountCell(score.invented) + PercentCell(score.completeness) + PercentCell(score.correctness) + PercentCell(score.quality) +
+            PercentCell(score.completeness_area) + PercentCell(score.correctness_area) + PercentCell(score.quality_area) + "</tr>";
   }
-  html += "</tbody></table></div>";
+  html += kTableEnd;
   if (truth.outlines_not_counted + truth.found_not_counted > 0) {
-    html += fmt::format("<p class=\"note\">Not counted: {} true outlines and {} found buildings.</p>", FormatInteger(truth.outlines_not_counted),
-                        FormatInteger(truth.found_not_counted));
+    html += Note(fmt::format("Not counted: {} true outlines and {} found buildings.", FormatInteger(truth.outlines_not_counted),
+                             FormatInteger(truth.found_not_counted)));
   }
   return html + "</div>\n";
 }
@@ -55,9 +44,9 @@ const char* UnitOfMeasure(const std::string& measure) {
 }
 
 std::string ErrorRow(const buildings::BuildingRoofScores& roof, const buildings::BuildingErrors& errors) {
-  const auto figure = [&](double value) { return NumberCell(value, FormatFixed(value, 2, UnitOfMeasure(errors.measure))); };
+  const auto figure = [&](double value) { return FixedCell(value, 2, UnitOfMeasure(errors.measure)); };
   return "<tr>" + TextCell(errors.measure) + TextCell(roof.roof) + CountCell(errors.n) + figure(errors.bias) + figure(errors.rmse) +
-         figure(errors.nmad) + figure(errors.median_abs) + figure(errors.p90_abs) + PartCell(errors.within_sigma) + "</tr>";
+         figure(errors.nmad) + figure(errors.median_abs) + figure(errors.p90_abs) + PercentCell(errors.within_sigma) + "</tr>";
 }
 
 std::string ErrorTable(const buildings::BuildingTruthScores& truth) {
@@ -66,36 +55,33 @@ std::string ErrorTable(const buildings::BuildingTruthScores& truth) {
     for (const buildings::BuildingErrors& errors : roof.errors) rows += ErrorRow(roof, errors);
   }
   if (rows.empty()) return "";
-  return "<div class=\"block\"><h3>Errors of the measures</h3><p class=\"lead\">Found minus true, of all matched buildings and by true kind of roof. "
-         "NMAD "
-         "is 1.4826 times the median distance of the errors from their median: the standard deviation, if errors are normal. The last column should "
-         "be "
-         "95\xE2\x80\xAF%: more means that the stated uncertainties are too large, less that they are too small. An error of the geo-reference "
-         "counts "
-         "too.</p><div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Measure</th><th>Roof</th><th class=\"num\">Buildings</th>"
-         "<th class=\"num\">Mean error</th><th class=\"num\">RMSE</th><th class=\"num\">NMAD</th><th class=\"num\">Median size</th>"
-         "<th class=\"num\">90\xE2\x80\xAF% are below</th><th class=\"num\">Within 1.96 \xCF\x83</th></tr></thead><tbody>" +
-         rows + "</tbody></table></div></div>\n";
+  return BlockBegin("Errors of the measures",
+                    "Found minus true, of all matched buildings and by true kind of roof. NMAD is 1.4826 times the median distance of the errors "
+                    "from their median: the standard deviation, if errors are normal. The last column should be 95\xE2\x80\xAF%: more means that the "
+                    "stated uncertainties are too large, less that they are too small. An error of the geo-reference counts too.") +
+         TableBegin(Headings({"Measure", "Roof"}) +
+                    NumberHeadings({"Buildings", "Mean error", "RMSE", "NMAD", "Median size", "90\xE2\x80\xAF% are below", "Within 1.96 \xCF\x83"})) +
+         rows + kTableEnd + "</div>\n";
 }
 
 std::string RoofNote(const buildings::BuildingTruthScores& truth) {
-  std::string html;
+  std::string text;
   for (const buildings::BuildingRoofScores& roof : truth.roofs) {
     if (roof.matched == 0) continue;
-    html += fmt::format("{}{} of {} {}", html.empty() ? "<p class=\"note\">The kind of roof is right for " : "; ", FormatPercent(roof.roof_right),
+    text += fmt::format("{}{} of {} {}", text.empty() ? "The kind of roof is right for " : "; ", FormatPercent(roof.roof_right),
                         FormatInteger(roof.matched), roof.roof == "all" ? "buildings" : EscapeHtml(roof.roof) + " roofs");
   }
-  if (html.empty()) return "";
-  return html + fmt::format(". Of {} corners of true outlines {} have a found corner within 3 m, with an RMSE of {}.</p>\n",
-                            FormatInteger(truth.corners), FormatPercent(truth.corners_found), FormatFixed(truth.corner_rmse_m, 2, "m"));
+  if (text.empty()) return "";
+  text += fmt::format(". Of {} corners of true outlines {} have a found corner within 3 m, with an RMSE of {}.", FormatInteger(truth.corners),
+                      FormatPercent(truth.corners_found), FormatFixed(truth.corner_rmse_m, 2, "m"));
+  return Note(text) + "\n";
 }
 
 std::string ScaleSentence(const buildings::BuildingsReport& report) {
   const skyquilt::buildings::BuildingSet& set = report.compared.set;
   if (!set.metric) {
     return " Lengths have no unit, because the scale is unknown: photos with GPS tags, or a length measured on site (buildings.scale_bar), would "
-           "give "
-           "it.";
+           "give it.";
   }
   std::string text = set.scale_source == "scale bar" ? " The scale is that of the given scale bar." : "";
   if (!report.vertical.empty()) {
@@ -105,11 +91,11 @@ std::string ScaleSentence(const buildings::BuildingsReport& report) {
 }
 
 std::string FileLinks(const buildings::BuildingsReport& report) {
-  std::string html;
+  std::string links;
   for (const std::string& file : report.files) {
-    html += fmt::format("{0}<a href=\"../buildings/{1}\">{1}</a>", html.empty() ? "<p class=\"note\">Files: " : ", ", EscapeHtml(file));
+    links += fmt::format("{0}<a href=\"../buildings/{1}\">{1}</a>", links.empty() ? "Files: " : ", ", EscapeHtml(file));
   }
-  return html.empty() ? html : html + ".</p>\n";
+  return links.empty() ? "" : Note(links + ".") + "\n";
 }
 
 std::string SolidNote(const buildings::BuildingScores& scores) {
@@ -122,7 +108,7 @@ std::string SolidNote(const buildings::BuildingScores& scores) {
               ? "All solids are closed and valid."
               : fmt::format("{} solids with roofs and {} blocks are not valid.", FormatInteger(scores.solids_rejected),
                             FormatInteger(scores.blocks_rejected));
-  return "<p class=\"note\">" + text + "</p>\n";
+  return Note(text) + "\n";
 }
 
 std::string ChipsOf(const buildings::BuildingScores& scores, const BuildingUnits& units) {
@@ -147,21 +133,19 @@ std::string BuildingsSection(const ReportInput& input) {
   const buildings::BuildingsReport& report = *input.buildings;
   const buildings::BuildingScores& scores = *input.metrics->buildings;
   const skyquilt::buildings::BuildingSet& set = report.compared.set;
-  std::string html = "<section id=\"buildings\"><div class=\"heading\"><h2>Buildings</h2>";
   if (set.buildings.empty()) {
-    html += "</div><p class=\"card empty\">No buildings were found.</p>\n";
-    return html + (report.compared.truth && !report.compared.truth->outlines.empty() ? BuildingsMap(input) : "") + BuildingScoreTables(scores) +
+    return SectionBegin("buildings", "Buildings") + EmptyCard("No buildings were found.") + "\n" +
+           (report.compared.truth && !report.compared.truth->outlines.empty() ? BuildingsMap(input) : "") + BuildingScoreTables(scores) +
            "</section>\n";
   }
-  html += "<div class=\"chips\">" + ChipsOf(scores, BuildingUnits::Of(set)) + "</div></div>";
-  html +=
-      "<p class=\"lead\">Found in the points of the surface and measured by fitting walls and roofs to them. Length and width are between outer "
-      "walls, "
-      "without the roof's overhang; the direction is that of the length, counter-clockwise from east. The figure after \xC2\xB1 is one standard "
-      "deviation." +
-      ScaleSentence(report) + "</p>";
-  return html + BuildingsMap(input) + "<div class=\"block\">" + BuildingsTable(report) + "</div>" + FileLinks(report) + SolidNote(scores) +
-         BuildingCards(report) + BuildingScoreTables(scores) + "</section>\n";
+  const std::string lead =
+      "Found in the points of the surface and measured by fitting walls and roofs to them. Length and width are between outer "
+      "walls, without the roof's overhang; the direction is that of the length, counter-clockwise from east. The figure after \xC2\xB1 is one "
+      "standard deviation." +
+      ScaleSentence(report);
+  return SectionBegin("buildings", "Buildings", Chips(ChipsOf(scores, BuildingUnits::Of(set)))) + Lead(lead) + BuildingsMap(input) +
+         "<div class=\"block\">" + BuildingsTable(report) + "</div>" + FileLinks(report) + SolidNote(scores) + BuildingCards(report) +
+         BuildingScoreTables(scores) + "</section>\n";
 }
 
 }  // namespace skyquilt::evaluate::page

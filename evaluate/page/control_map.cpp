@@ -65,18 +65,15 @@ const char* ClassOf(survey::ControlUse use) {
 std::string Tracks(const survey::Survey& survey, const DrawnMap& frame) {
   std::string svg;
   for (const auto& [flight, photos] : control::PhotosByFlight(survey)) {
-    std::string points;
-    for (const size_t i : photos) {
-      const Eigen::Vector3d centre = survey.photos[i].cam_from_enu.OriginInSource();
-      points += fmt::format("{:.1f},{:.1f} ", frame.X(centre.x()), frame.Y(centre.y()));
-    }
-    svg += fmt::format("<polyline class=\"cameras\" points=\"{}\"><title>Camera positions of flight {}</title></polyline>", points, flight + 1);
+    std::vector<Eigen::Vector2d> points_px;
+    for (const size_t i : photos) points_px.push_back(frame.Pixel(survey.photos[i].cam_from_enu.OriginInSource()));
+    svg += TrackLine("cameras", points_px, fmt::format("Camera positions of flight {}", flight + 1));
   }
   return svg;
 }
 
 std::string Mark(const survey::ControlPointFit& point, const DrawnMap& frame, double exaggeration) {
-  const Eigen::Vector2d at(frame.X(point.given_in_enu.x()), frame.Y(point.given_in_enu.y()));
+  const Eigen::Vector2d at = frame.Pixel(point.given_in_enu);
   std::string title = EscapeHtml(point.label) + ", " + survey::NameOf(point.use);
   std::string svg;
   if (HasError(point)) {
@@ -105,15 +102,11 @@ std::string ControlMap(const survey::Survey& survey) {
   if (!std::any_of(fit.points.begin(), fit.points.end(), HasError)) return "";
   const DrawnMap frame = FrameOf(survey);
   const double exaggeration = Exaggeration(fit, frame);
-  std::string svg = fmt::format(
-      "<figure class=\"card map-card\"><svg class=\"map geo-map control-map\" viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"Map of control "
-      "points and their errors\">",
-      frame.width_px(), frame.height_px());
-  svg += Tracks(survey, frame);
+  std::string svg = MapFigureBegin(frame, "geo-map control-map", "Map of control points and their errors") + Tracks(survey, frame);
   for (const survey::ControlPointFit& point : fit.points) {
     if (point.given_in_enu.head<2>().allFinite()) svg += Mark(point, frame, exaggeration);
   }
-  svg += ScaleBarAndNorth(frame, survey.georeferenced) + "</svg>";
+  svg += ScaleBarAndNorth(frame, survey.georeferenced);
   std::string legend;
   const auto entry = [&](survey::ControlUse use, const char* name) {
     const bool any = std::any_of(fit.points.begin(), fit.points.end(), [&](const survey::ControlPointFit& point) { return point.use == use; });
@@ -124,10 +117,10 @@ std::string ControlMap(const survey::Survey& survey) {
   entry(survey::ControlUse::kRejected, "rejected");
   entry(survey::ControlUse::kUnseen, "not estimated");
   std::string note =
-      "Arrows lead from the given position towards the estimated one; the radius of a ring is the error in height, dashed where the "
-      "estimate is too low. Dashed arrows are cut";
+      "Arrows lead from the given position towards the estimated one; the radius of a ring is the error in height, dashed where the estimate is too "
+      "low. Dashed arrows are cut";
   if (exaggeration > 1.0) note += fmt::format(". Errors are drawn <b>{:.0f} times too large</b>", exaggeration);
-  return svg + "<figcaption><div class=\"legend\">" + legend + "</div><p class=\"note\">" + note + ".</p></figcaption></figure>\n";
+  return svg + MapFigureEnd(legend, note + ".");
 }
 
 }  // namespace skyquilt::evaluate::page

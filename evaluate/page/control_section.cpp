@@ -17,8 +17,8 @@ namespace {
 using survey::ControlPointFit;
 using survey::ControlUse;
 
-std::string Lead(const survey::ControlFit& fit) {
-  std::string html = "<p class=\"lead\">";
+std::string LeadOf(const survey::ControlFit& fit) {
+  std::string html;
   if (fit.placed) {
     html += "The survey's place on Earth comes from the control points";
     html += fit.adjusted ? ", in a bundle adjustment of photos, lenses and points. " : ", by a similarity transform: the poses were not adjusted. ";
@@ -28,17 +28,14 @@ std::string Lead(const survey::ControlFit& fit) {
   html += "Coordinates are from " + EscapeHtml(fit.file);
   if (!fit.crs.empty()) html += ", " + EscapeHtml(fit.crs);
   if (!fit.heights.empty()) html += " (heights: " + EscapeHtml(fit.heights) + ")";
-  return html +
-         ". Errors are estimated less given position. Control points made the result, so their errors flatter it; check points and points "
-         "that are left out in turn did not.</p>";
+  return Lead(
+      html +
+      ". Errors are estimated less given position. Control points made the result, so their errors flatter it; check points and points that are "
+      "left out in turn did not.");
 }
 
 std::string MetresCell(double metres) {
-  return NumberCell(metres, FormatFixed(metres, 3, "m"));
-}
-
-std::string GsdCell(double gsds) {
-  return NumberCell(gsds, FormatFixed(gsds, 2, "GSD"));
+  return FixedCell(metres, 3, "m");
 }
 
 std::string StatisticsRows(const char* name, const control::ControlErrors& errors) {
@@ -48,12 +45,12 @@ std::string StatisticsRows(const char* name, const control::ControlErrors& error
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const int n = axis < 2 ? errors.n : errors.n_heights;
     if (n == 0) continue;
-    html += fmt::format("<tr><td>{}, {}</td>", name, kAxes[static_cast<size_t>(axis)]) + NumberCell(n, FormatInteger(n)) +
-            MetresCell(errors.mean_m[axis]) + MetresCell(errors.sigma_m[axis]) + MetresCell(errors.rmse_m[axis]) + "<td class=\"num\"></td></tr>";
+    html += fmt::format("<tr><td>{}, {}</td>", name, kAxes[static_cast<size_t>(axis)]) + CountCell(n) + MetresCell(errors.mean_m[axis]) +
+            MetresCell(errors.sigma_m[axis]) + MetresCell(errors.rmse_m[axis]) + "<td class=\"num\"></td></tr>";
   }
   const auto total = [&](const char* what, int n, double rmse_m, double rmse_gsd) {
-    html += fmt::format("<tr><td><b>{}, {}</b></td>", name, what) + NumberCell(n, FormatInteger(n)) +
-            "<td class=\"num\"></td><td class=\"num\"></td>" + MetresCell(rmse_m) + GsdCell(rmse_gsd) + "</tr>";
+    html += fmt::format("<tr><td><b>{}, {}</b></td>", name, what) + CountCell(n) + "<td class=\"num\"></td><td class=\"num\"></td>" +
+            MetresCell(rmse_m) + FixedCell(rmse_gsd, 2, "GSD") + "</tr>";
   };
   total("horizontal", errors.n, errors.rmse_horizontal_m, errors.rmse_horizontal_gsd);
   if (errors.n_heights > 0) total("vertical", errors.n_heights, errors.rmse_vertical_m, errors.rmse_vertical_gsd);
@@ -63,11 +60,9 @@ std::string StatisticsRows(const char* name, const control::ControlErrors& error
 std::string StatisticsTable(const control::ControlSummary& summary) {
   const std::string rows = StatisticsRows("Check points", summary.check) + StatisticsRows("Control points left out in turn", summary.left_out) +
                            StatisticsRows("Control points", summary.control);
-  if (rows.empty()) return "<p class=\"card empty\">No point has an error: fewer than two usable marks each.</p>";
-  return "<div class=\"card scroll\"><table><thead><tr><th>Errors</th><th class=\"num\">Points</th><th class=\"num\">Mean</th><th "
-         "class=\"num\">Standard "
-         "deviation</th><th class=\"num\">RMSE</th><th class=\"num\">RMSE in GSD</th></tr></thead><tbody>" +
-         rows + "</tbody></table></div>\n";
+  if (rows.empty()) return EmptyCard("No point has an error: fewer than two usable marks each.");
+  return TableBegin(Headings({"Errors"}) + NumberHeadings({"Points", "Mean", "Standard deviation", "RMSE", "RMSE in GSD"}), "") + rows + kTableEnd +
+         "\n";
 }
 
 std::string SystematicFinding(const control::ControlErrors& errors) {
@@ -103,11 +98,8 @@ std::string Verdict(const control::ControlSummary& summary) {
 
 std::string PointTable(const survey::ControlFit& fit) {
   std::string html =
-      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Point</th><th>Use</th><th class=\"num\">East</th><th "
-      "class=\"num\">North</th><th "
-      "class=\"num\">Up</th><th class=\"num\">Error east</th><th class=\"num\">north</th><th class=\"num\">up</th><th class=\"num\">1 \xCF\x83 "
-      "east</th><th class=\"num\">north</th><th class=\"num\">up</th><th class=\"num\">Left out: horizontal</th><th class=\"num\">up</th><th "
-      "class=\"num\">Pixel error</th><th class=\"num\">Marks used</th><th class=\"num\">GSD</th></tr></thead><tbody>";
+      TableBegin(Headings({"Point", "Use"}) + NumberHeadings({"East", "North", "Up", "Error east", "north", "up", "1 \xCF\x83 east", "north", "up",
+                                                              "Left out: horizontal", "up", "Pixel error", "Marks used", "GSD"}));
   for (const ControlPointFit& point : fit.points) {
     const auto n_used = std::count_if(point.marks.begin(), point.marks.end(), [](const survey::ControlMarkFit& mark) { return mark.used; });
     const bool rejected = point.use == ControlUse::kRejected;
@@ -116,12 +108,11 @@ std::string PointTable(const survey::ControlFit& fit) {
     for (const Eigen::Vector3d& v : {point.given_in_enu, point.error_m, point.sigma_m}) {
       for (const double value : {v.x(), v.y(), v.z()}) html += MetresCell(value);
     }
-    html += MetresCell(point.left_out_error_m.head<2>().norm()) + MetresCell(point.left_out_error_m.z());
-    html += NumberCell(point.error_px, FormatFixed(point.error_px, 2, "px"));
+    html += MetresCell(point.left_out_error_m.head<2>().norm()) + MetresCell(point.left_out_error_m.z()) + FixedCell(point.error_px, 2, "px");
     html += NumberCell(static_cast<double>(n_used), fmt::format("{} of {}", n_used, point.marks.size()));
     html += NumberCell(point.gsd_m, FormatFixed(100.0 * point.gsd_m, 1, "cm")) + "</tr>";
   }
-  return html + "</tbody></table></div>\n";
+  return html + kTableEnd + "\n";
 }
 
 // The picture with its cross and ring.
@@ -143,10 +134,11 @@ std::string Drawing(const control::MarkPicture& picture, const std::string& file
 
 std::string MarkPictures(const survey::ControlFit& fit, const std::vector<control::MarkPicture>& pictures) {
   if (pictures.empty()) return "";
-  std::string html =
-      "<h3>Marks</h3><p class=\"note\">Each mark in its photo and in the scene as that camera would see it, 64 pixels of the photo across. The cross "
-      "is "
-      "the mark, the ring the projection of the estimated point.</p><div class=\"mark-list\">";
+  std::string html = "<h3>Marks</h3>" +
+                     Note(
+                         "Each mark in its photo and in the scene as that camera would see it, 64 pixels of the photo across. The cross is the mark, "
+                         "the ring the projection of the estimated point.") +
+                     "<div class=\"mark-list\">";
   for (size_t i = 0; i < pictures.size();) {
     const ControlPointFit& point = fit.points[pictures[i].point];
     html += fmt::format("<div class=\"card marks\"><h3>{} <span class=\"note\">{}</span></h3><div class=\"crops\">", EscapeHtml(point.label),
@@ -167,8 +159,8 @@ std::string ControlSection(const ReportInput& input) {
   const survey::ControlFit& fit = input.survey->control;
   if (fit.points.empty()) return "";
   const control::ControlSummary summary = control::SummariseControl(fit);
-  return "<section id=\"control\"><div class=\"heading\"><h2>Control points</h2></div>" + Lead(fit) + StatisticsTable(summary) + Verdict(summary) +
-         ControlMap(*input.survey) + PointTable(fit) + MarkPictures(fit, input.mark_pictures) + "</section>\n";
+  return SectionBegin("control", "Control points") + LeadOf(fit) + StatisticsTable(summary) + Verdict(summary) + ControlMap(*input.survey) +
+         PointTable(fit) + MarkPictures(fit, input.mark_pictures) + "</section>\n";
 }
 
 }  // namespace skyquilt::evaluate::page

@@ -117,13 +117,12 @@ std::string DetailsSection(const ReportInput& input) {
   AddSeamRows(metrics, &table);
   AddFlightRows(metrics, &table);
   AddCostRows(metrics, &table);
-  return "<section id=\"details\"><div class=\"heading\"><h2>Details</h2></div>" + table.Html() + ClassTable(metrics) + "</section>\n";
+  return SectionBegin("details", "Details") + table.Html() + ClassTable(metrics) + "</section>\n";
 }
 
 std::string MethodSection(const ReportInput& input) {
   const metrics::Metrics& metrics = *input.metrics;
-  std::string html =
-      "<section id=\"method\"><div class=\"heading\"><h2>How this was measured</h2></div><div class=\"facts-grid\"><dl class=\"card facts\">";
+  std::string html = SectionBegin("method", "How this was measured") + "<div class=\"facts-grid\"><dl class=\"card facts\">";
   const auto fact = [&](const char* name, const std::string& value) { html += Fact(name, value); };
   fact("Date", EscapeHtml(ShownDate(metrics.date)));
   fact("Machine", EscapeHtml(metrics.machine));

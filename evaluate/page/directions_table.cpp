@@ -13,21 +13,19 @@ std::string DirectionsTable(const survey::Survey& survey) {
   for (size_t degree = 0; degree < directions.histogram.size(); ++degree) {
     curve.points.emplace_back(static_cast<double>(degree) + 0.5, 100.0 * directions.histogram[degree]);
   }
-  std::string html = "<h3>Directions of buildings and streets</h3><p class=\"lead\">From " + FormatInteger(directions.lines) + " straight lines in " +
-                     FormatInteger(directions.photos) +
-                     " photos. Yaw is counter-clockwise from east; the four directions of a right angle count as one, so it ends at 90\xC2\xB0.</p>" +
+  const std::string lead =
+      "From " + FormatInteger(directions.lines) + " straight lines in " + FormatInteger(directions.photos) +
+      " photos. Yaw is counter-clockwise from east; the four directions of a right angle count as one, so it ends at 90\xC2\xB0.";
+  std::string html = "<h3>Directions of buildings and streets</h3>" + Lead(lead) +
                      CurveChart({curve}, {.title = "Length of lines by yaw", .x_label = "yaw (degrees)", .y_label = "share of the length (%)"});
-  if (directions.modes.empty()) return html + "<p class=\"note\">No direction stands out.</p>";
-  html +=
-      "<div class=\"scroll\"><table><thead><tr><th>yaw</th><th>uncertainty</th><th>spread</th><th>share of the "
-      "length</th><th>lines</th></tr></thead><tbody>";
+  if (directions.modes.empty()) return html + Note("No direction stands out.");
+  html += "<div class=\"scroll\"><table><thead><tr>" + Headings({"yaw", "uncertainty", "spread", "share of the length", "lines"}) +
+          "</tr></thead><tbody>";
   for (const survey::YawMode& mode : directions.modes) {
-    html += "<tr>" + NumberCell(mode.yaw_deg, FormatFixed(mode.yaw_deg, 1, kDegree)) +
-            NumberCell(mode.sigma_deg, FormatFixed(mode.sigma_deg, 2, kDegree)) +
-            NumberCell(mode.spread_deg, FormatFixed(mode.spread_deg, 1, kDegree)) + NumberCell(mode.share, FormatPercent(mode.share)) +
-            NumberCell(mode.lines, FormatInteger(mode.lines)) + "</tr>";
+    html += "<tr>" + FixedCell(mode.yaw_deg, 1, kDegree) + FixedCell(mode.sigma_deg, 2, kDegree) + FixedCell(mode.spread_deg, 1, kDegree) +
+            PercentCell(mode.share) + CountCell(mode.lines) + "</tr>";
   }
-  return html + "</tbody></table></div>";
+  return html + kTableEnd;
 }
 
 }  // namespace skyquilt::evaluate::page

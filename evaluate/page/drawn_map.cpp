@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evaluate/page/page_parts.h"
+
 namespace skyquilt::evaluate::page {
 
 namespace {
@@ -46,6 +48,28 @@ DrawnMap::DrawnMap(const MapBounds& bounds) {
   height_px_ = size.y() * scale_;
   west_ = low.x();
   north_ = high.y();
+}
+
+std::string MapFigureBegin(const DrawnMap& map, const std::string& css_class, const char* spoken) {
+  return fmt::format("<figure class=\"card map-card\"><svg class=\"map {}\" viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"{}\">", css_class,
+                     map.width_px(), map.height_px(), spoken);
+}
+
+std::string MapFigureEnd(const std::string& legend, const std::string& note) {
+  return fmt::format("</svg><figcaption><div class=\"legend\">{}</div>{}</figcaption></figure>\n", legend, note.empty() ? "" : Note(note));
+}
+
+std::string BackgroundImage(const DrawnMap& map, const MapBackground& background, const char* css_class) {
+  return fmt::format("<image {}href=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" preserveAspectRatio=\"none\"/>",
+                     *css_class == '\0' ? "" : fmt::format("class=\"{}\" ", css_class), EscapeHtml(background.image), map.X(background.min_enu.x()),
+                     map.Y(background.max_enu.y()), (background.max_enu.x() - background.min_enu.x()) * map.scale(),
+                     (background.max_enu.y() - background.min_enu.y()) * map.scale());
+}
+
+std::string TrackLine(const char* css_class, const std::vector<Eigen::Vector2d>& points_px, const std::string& title) {
+  std::string points;
+  for (const Eigen::Vector2d& x_px : points_px) points += fmt::format("{:.1f},{:.1f} ", x_px.x(), x_px.y());
+  return fmt::format("<polyline class=\"{}\" points=\"{}\"><title>{}</title></polyline>", css_class, points, title);
 }
 
 std::string ScaleBarAndNorth(const DrawnMap& frame, bool georeferenced) {

@@ -83,28 +83,18 @@ class GeoMapDrawing {
   }
 
   std::string Figure() const {
-    return fmt::format(
-               "<figure class=\"card map-card\"><svg class=\"map geo-map{}\" viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"Map of camera "
-               "positions and GPS tags\">",
-               survey_.photos.size() > 800 ? " many" : "", frame_.width_px(), frame_.height_px()) +
-           Tracks() + Arrows(true) + Arrows(false) + Untagged() + ScaleBarAndNorth(frame_, true) + "</svg>" + Caption() + "</figure>\n";
+    return MapFigureBegin(frame_, survey_.photos.size() > 800 ? "geo-map many" : "geo-map", "Map of camera positions and GPS tags") + Tracks() +
+           Arrows(true) + Arrows(false) + Untagged() + ScaleBarAndNorth(frame_, true) + End();
   }
 
  private:
-  Eigen::Vector2d Pixel(const Eigen::Vector3d& x_in_enu) const { return {frame_.X(x_in_enu.x()), frame_.Y(x_in_enu.y())}; }
-  Eigen::Vector2d CameraPixel(size_t i) const { return Pixel(survey_.photos[i].cam_from_enu.OriginInSource()); }
+  Eigen::Vector2d CameraPixel(size_t i) const { return frame_.Pixel(survey_.photos[i].cam_from_enu.OriginInSource()); }
   Eigen::Vector2d TagPixel(size_t i) const {
     const Eigen::Vector2d camera_px = CameraPixel(i);
-    return camera_px + exaggeration_ * (Pixel(tags_[i]->recorded) - camera_px);
+    return camera_px + exaggeration_ * (frame_.Pixel(tags_[i]->recorded) - camera_px);
   }
   bool Inside(const Eigen::Vector2d& x_px) const {
     return x_px.x() >= 0.0 && x_px.y() >= 0.0 && x_px.x() <= frame_.width_px() && x_px.y() <= frame_.height_px();
-  }
-
-  std::string Line(const char* css_class, const std::vector<Eigen::Vector2d>& points_px, const std::string& title) const {
-    std::string points;
-    for (const Eigen::Vector2d& x_px : points_px) points += fmt::format("{:.1f},{:.1f} ", x_px.x(), x_px.y());
-    return fmt::format("<polyline class=\"{}\" points=\"{}\"><title>{}</title></polyline>", css_class, points, title);
   }
 
   std::string Tracks() const {
@@ -116,8 +106,8 @@ class GeoMapDrawing {
         // Tags far away are shown by their arrows alone.
         if (tags_[i] && Inside(TagPixel(i))) tags_px.push_back(TagPixel(i));
       }
-      svg += Line("tags", tags_px, fmt::format("GPS tags of flight {}", flight + 1));
-      svg += Line("cameras", cameras_px, fmt::format("Fitted camera positions of flight {}", flight + 1));
+      svg += TrackLine("tags", tags_px, fmt::format("GPS tags of flight {}", flight + 1));
+      svg += TrackLine("cameras", cameras_px, fmt::format("Fitted camera positions of flight {}", flight + 1));
     }
     return svg;
   }
@@ -165,15 +155,14 @@ class GeoMapDrawing {
     return false;
   }
 
-  std::string Caption() const {
+  std::string End() const {
     std::string legend = LegendEntry("c1", "fitted camera positions") + LegendEntry("dashes", "GPS tags as recorded");
     if (AnyPhoto(true, true)) legend += LegendEntry("c0", "from a fitted position to its tag");
     if (AnyPhoto(true, false)) legend += LegendEntry("c5", "to a tag that is not used");
     if (AnyPhoto(false, false)) legend += LegendEntry("c1 ring", "photo without a tag");
     std::string text = "Tags are drawn as recorded, before any correction";
     if (exaggeration_ > 1.0) text += fmt::format(", and <b>{:.0f} times too far</b> from the fitted positions", exaggeration_);
-    return "<figcaption><div class=\"legend\">" + legend + "</div><p class=\"note\">" + text +
-           ". Dashed arrows lead beyond the map. Where arrows point back along the track on all lines, the tags lag.</p></figcaption>";
+    return MapFigureEnd(legend, text + ". Dashed arrows lead beyond the map. Where arrows point back along the track on all lines, the tags lag.");
   }
 
   const survey::Survey& survey_;

@@ -23,7 +23,7 @@ std::string WithSigma(double value, double sigma, int decimals, const char* unit
 
 std::string FittedLead(const survey::Survey& survey) {
   const survey::GeoFit& fit = survey.fit;
-  std::string html = "<p class=\"lead\">";
+  std::string html;
   if (survey.control.placed) {
     html += "The model was placed on Earth by its <a href=\"#control\">control points</a>; the GPS tags are only compared with it.";
   } else if (FrameIsExact(fit)) {
@@ -38,15 +38,14 @@ std::string FittedLead(const survey::Survey& survey) {
     html += fmt::format(" RMSE against the tags {} over {} of {} tagged photos: {} horizontal, {} vertical.", FormatFixed(fit.rmse_m, 2, "m"),
                         fit.n_inliers, fit.n_matches, FormatFixed(fit.rmse_horizontal_m, 2, "m"), FormatFixed(fit.rmse_vertical_m, 2, "m"));
   }
-  return html + fmt::format(" Coordinates are metres east, north and up of the origin at latitude {}, longitude {}, height {}.</p>",
-                            FormatFixed(survey.origin.latitude_deg, 6, kDegree), FormatFixed(survey.origin.longitude_deg, 6, kDegree),
-                            FormatFixed(survey.origin.height_m, 1, "m"));
+  return Lead(html + fmt::format(" Coordinates are metres east, north and up of the origin at latitude {}, longitude {}, height {}.",
+                                 FormatFixed(survey.origin.latitude_deg, 6, kDegree), FormatFixed(survey.origin.longitude_deg, 6, kDegree),
+                                 FormatFixed(survey.origin.height_m, 1, "m")));
 }
 
 std::string LocalLead(const survey::Survey& survey) {
   std::string html =
-      "<p class=\"lead\">There is no geo-reference: positions are in a levelled local frame of unknown scale. Lengths are not metres, and no "
-      "direction is north.</p>";
+      Lead("There is no geo-reference: positions are in a levelled local frame of unknown scale. Lengths are not metres, and no direction is north.");
   std::string reasons;
   for (const survey::Problem& problem : survey.problems) {
     if (problem.about_place) reasons += "<li>" + EscapeHtml(problem.finding) + ".</li>";
@@ -126,18 +125,17 @@ std::string FlightTable(const survey::Survey& survey) {
     ++n_photos[flight];
     n_used[flight] += photo.gps_inlier ? 1 : 0;
   }
-  const auto count = [](int64_t n) { return NumberCell(static_cast<double>(n), FormatInteger(n)); };
   const auto metres = [](const std::vector<double>& values, size_t i) {
     const double value = i < values.size() ? values[i] : kNotMeasured;
-    return NumberCell(value, FormatFixed(value, 2, "m"));
+    return FixedCell(value, 2, "m");
   };
   std::string html =
-      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Flight</th><th class=\"num\">Photos</th><th class=\"num\">Tags used</th>"
-      "<th class=\"num\">Offset of tagged heights</th><th class=\"num\">Drift of tagged heights</th></tr></thead><tbody>";
+      TableBegin(Headings({"Flight"}) + NumberHeadings({"Photos", "Tags used", "Offset of tagged heights", "Drift of tagged heights"}));
   for (size_t i = 0; i < n_flights; ++i) {
-    html += fmt::format("<tr><td>{}</td>", i + 1) + count(n_photos[i]) + count(n_used[i]) + metres(offset_m, i) + metres(drift_m, i) + "</tr>";
+    html +=
+        fmt::format("<tr><td>{}</td>", i + 1) + CountCell(n_photos[i]) + CountCell(n_used[i]) + metres(offset_m, i) + metres(drift_m, i) + "</tr>";
   }
-  return html + "</tbody></table></div>\n";
+  return html + kTableEnd + "\n";
 }
 
 }  // namespace
@@ -150,7 +148,7 @@ bool FrameIsExact(const survey::GeoFit& fit) {
 
 std::string GeoSection(const ReportInput& input) {
   const survey::Survey& survey = *input.survey;
-  std::string html = "<section id=\"geo\"><div class=\"heading\"><h2>Geo-reference</h2></div>";
+  std::string html = SectionBegin("geo", "Geo-reference");
   html += survey.georeferenced ? FittedLead(survey) : LocalLead(survey);
   const bool fitted = survey.georeferenced && !FrameIsExact(survey.fit);
   FigureTable table;

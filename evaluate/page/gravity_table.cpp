@@ -27,14 +27,9 @@ constexpr std::array<Kind, 4> kKinds = {{{"gimbal", "Gimbal", "Gimbal angles in 
                                          {"ground", "Ground", "Plane of the ground points"},
                                          {"gps_heights", "GPS heights", "Heights of the GPS tags"}}};
 
-std::string NameOf(const survey::GravityEvidence& evidence) {
+Kind KindOf(const survey::GravityEvidence& evidence) {
   const auto* known = std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& kind) { return evidence.kind == kind.kind; });
-  return known == kKinds.end() ? evidence.kind : known->name;
-}
-
-std::string MeaningOf(const survey::GravityEvidence& evidence) {
-  const auto* known = std::find_if(kKinds.begin(), kKinds.end(), [&](const Kind& kind) { return evidence.kind == kind.kind; });
-  return known == kKinds.end() ? "Other evidence" : known->meaning;
+  return known == kKinds.end() ? Kind{"", evidence.kind.c_str(), "Other evidence"} : *known;
 }
 
 double LeanOf(const survey::GravityEvidence& evidence) {
@@ -96,27 +91,25 @@ std::string TargetPlot(const std::vector<survey::GravityEvidence>& gravity, bool
     const bool beyond = lean_deg > rim_deg, used = evidence.weight > 0.0;
     const double share = beyond ? rim_deg / lean_deg : 1.0;
     const double x = kMiddle_px + share * evidence.lean_east_deg * px_per_deg, y = kMiddle_px - share * evidence.lean_north_deg * px_per_deg;
-    const std::string title = EscapeHtml(fmt::format("{}: {}", NameOf(evidence), ShownLean(evidence, georeferenced)));
+    const std::string title = EscapeHtml(fmt::format("{}: {}", KindOf(evidence).name, ShownLean(evidence, georeferenced)));
     html += fmt::format("<g class=\"c{}\"><title>{}</title>", i % 10, title);
     if (!beyond && std::isfinite(evidence.sigma_deg)) {
       html += fmt::format("<circle class=\"error\" clip-path=\"url(#gravity-rim)\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", x, y,
                           evidence.sigma_deg * px_per_deg);
     }
     html += fmt::format("<circle class=\"dot{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4.5\"/></g>", used ? "" : " hollow", x, y);
-    legend += LegendEntry(fmt::format("c{} {}", i % 10, used ? "disc" : "ring"), NameOf(evidence) + (beyond ? " (beyond the rim)" : ""));
+    legend +=
+        LegendEntry(fmt::format("c{} {}", i % 10, used ? "disc" : "ring"), std::string(KindOf(evidence).name) + (beyond ? " (beyond the rim)" : ""));
   }
   return html + FigureEnd(legend);
 }
 
 std::string EvidenceRow(const survey::GravityEvidence& evidence, bool georeferenced) {
   const double percent = 100.0 * std::clamp(evidence.weight, 0.0, 1.0);
-  std::string html = "<tr>" + TextCell(NameOf(evidence)) + TextCell(MeaningOf(evidence));
-  html += NumberCell(evidence.n, FormatInteger(evidence.n));
-  html +=
-      NumberCell(LeanOf(evidence), ShownLean(evidence, georeferenced)) + NumberCell(evidence.sigma_deg, FormatFixed(evidence.sigma_deg, 2, kDegree));
+  std::string html = "<tr>" + TextCell(KindOf(evidence).name) + TextCell(KindOf(evidence).meaning) + CountCell(evidence.n);
+  html += NumberCell(LeanOf(evidence), ShownLean(evidence, georeferenced)) + FixedCell(evidence.sigma_deg, 2, kDegree);
   if (!(evidence.weight > 0.0)) return html + NumberCell(0.0, "not used") + "</tr>";
-  return html + fmt::format("<td class=\"num bar\" data-v=\"{}\"><i style=\"--share:{:.3f}\"></i>{}</td></tr>", percent, 0.01 * percent,
-                            FormatFixed(percent, percent < 9.95 ? 1 : 0, "%"));
+  return html + BarCell(percent, 0.01 * percent, FormatFixed(percent, percent < 9.95 ? 1 : 0, "%")) + "</tr>";
 }
 
 }  // namespace
@@ -124,19 +117,19 @@ std::string EvidenceRow(const survey::GravityEvidence& evidence, bool georeferen
 std::string GravityEvidenceTable(const survey::Survey& survey) {
   const survey::GeoFit& fit = survey.fit;
   if (fit.gravity.empty()) return "";
-  std::string html = "<div class=\"block\"><h3>Evidence for the direction of gravity</h3><div class=\"gravity-grid\">" +
-                     TargetPlot(fit.gravity, survey.georeferenced);
-  html +=
-      "<div><div class=\"card scroll\"><table class=\"sortable gravity\"><thead><tr><th>Evidence</th><th>What it is</th><th class=\"num\">Number</th>"
-      "<th class=\"num\">Its up leans by</th><th class=\"num\">Accuracy</th><th class=\"num\">Weight</th></tr></thead><tbody>";
+  std::string html =
+      BlockBegin("Evidence for the direction of gravity") + "<div class=\"gravity-grid\">" + TargetPlot(fit.gravity, survey.georeferenced);
+  html += "<div>" +
+          TableBegin(Headings({"Evidence", "What it is"}) + NumberHeadings({"Number", "Its up leans by", "Accuracy", "Weight"}), "sortable gravity");
   for (const survey::GravityEvidence& evidence : fit.gravity) html += EvidenceRow(evidence, survey.georeferenced);
-  html += "</tbody></table></div><p class=\"note\">";
+  std::string note;
   if (std::isfinite(fit.tags_alone_tilt_deg)) {
-    html += fmt::format("A fit to the tags alone would tilt the survey by {}. ", FormatFixed(fit.tags_alone_tilt_deg, 1, kDegree));
+    note = fmt::format("A fit to the tags alone would tilt the survey by {}. ", FormatFixed(fit.tags_alone_tilt_deg, 1, kDegree));
   }
-  return html +
-         "Leans are angles against the result, which is the middle of the plot. Accuracy, the circle about each point, is one standard deviation. "
-         "Weight is the share in what is known of gravity.</p></div></div></div>\n";
+  note +=
+      "Leans are angles against the result, which is the middle of the plot. Accuracy, the circle about each point, is one standard deviation. "
+      "Weight is the share in what is known of gravity.";
+  return html + kTableEnd + Note(note) + "</div></div></div>\n";
 }
 
 }  // namespace skyquilt::evaluate::page

@@ -15,8 +15,8 @@ std::string Counted(int64_t n, const char* one, const char* several) {
 std::string GroupRow(const InputGroup& group) {
   const std::string reason = group.several ? "each its own, such as: " + group.reason : group.reason;
   const bool more = group.n > static_cast<int64_t>(group.examples.size());
-  return "<tr>" + TextCell(group.kind) + TextCell(group.taken ? "yes" : "no") + NumberCell(static_cast<double>(group.n), FormatInteger(group.n)) +
-         TextCell(reason) + TextCell(base::Join(group.examples) + (more ? ", ..." : "")) + "</tr>";
+  return "<tr>" + TextCell(group.kind) + TextCell(group.taken ? "yes" : "no") + CountCell(group.n) + TextCell(reason) +
+         TextCell(base::Join(group.examples) + (more ? ", ..." : "")) + "</tr>";
 }
 
 }  // namespace
@@ -24,15 +24,14 @@ std::string GroupRow(const InputGroup& group) {
 std::string InputSection(const ReportInput& input) {
   const InputFiles& files = input.files;
   if (!files.Remarkable()) return "";
-  std::string html = "<section id=\"input\"><div class=\"heading\"><h2>Photo folder</h2></div><p class=\"lead\">" +
-                     Counted(files.n_taken, "photo was", "photos were") + " taken, ";
-  html += files.n_left_out > 0 ? Counted(files.n_left_out, "other file or folder was", "other files and folders were") + " left out."
+  std::string lead = Counted(files.n_taken, "photo was", "photos were") + " taken, ";
+  lead += files.n_left_out > 0 ? Counted(files.n_left_out, "other file or folder was", "other files and folders were") + " left out."
                                : std::string("and nothing was left out.");
-  html +=
-      " Every file is in survey/input.csv; prepare.photos chooses others.</p><div class=\"card scroll\"><table class=\"sortable\"><thead><tr>"
-      "<th>Kind</th><th>Taken as photos</th><th class=\"num\">Files</th><th>Reason</th><th>Such as</th></tr></thead><tbody>";
+  lead += " Every file is in survey/input.csv; prepare.photos chooses others.";
+  std::string html = SectionBegin("input", "Photo folder") + Lead(lead) +
+                     TableBegin(Headings({"Kind", "Taken as photos"}) + NumberHeadings({"Files"}) + Headings({"Reason", "Such as"}));
   for (const InputGroup& group : files.groups) html += GroupRow(group);
-  return html + "</tbody></table></div></section>\n";
+  return html + kTableEnd + "</section>\n";
 }
 
 }  // namespace skyquilt::evaluate::page

@@ -4,11 +4,39 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "evaluate/measured.h"
 
 namespace skyquilt::evaluate::page {
+
+std::string SectionBegin(const char* id, const char* title, const std::string& beside) {
+  return fmt::format("<section id=\"{}\"><div class=\"heading\"><h2>{}</h2>{}</div>", id, title, beside);
+}
+
+std::string BlockBegin(const std::string& title, const std::string& lead) {
+  return fmt::format("<div class=\"block\"><h3>{}</h3>{}", title, lead.empty() ? "" : Lead(lead));
+}
+
+std::string Headings(std::initializer_list<const char*> names) {
+  std::string html;
+  for (const char* name : names) html += fmt::format("<th>{}</th>", name);
+  return html;
+}
+
+std::string NumberHeadings(std::initializer_list<const char*> names) {
+  std::string html;
+  for (const char* name : names) html += fmt::format("<th class=\"num\">{}</th>", name);
+  return html;
+}
+
+std::string TableBegin(const std::string& headings, const std::string& css_class) {
+  return fmt::format("<div class=\"card scroll\"><table{}><thead><tr>{}</tr></thead><tbody>",
+                     css_class.empty() ? "" : fmt::format(" class=\"{}\"", css_class), headings);
+}
+
+std::string BarCell(double value, double share, const std::string& shown) {
+  return fmt::format("<td class=\"num bar\" data-v=\"{}\"><i style=\"--share:{:.3f}\"></i>{}</td>", value, share, shown);
+}
 
 void FigureTable::Group(const char* name) {
   html_ += fmt::format("{}<tbody><tr class=\"group\"><th colspan=\"3\" scope=\"rowgroup\">{}</th></tr>", html_.empty() ? "" : "</tbody>", name);
@@ -19,8 +47,8 @@ void FigureTable::Row(const std::string& name, const std::string& value, const s
 }
 
 std::string FigureTable::Html() const {
-  return "<div class=\"card scroll\"><table class=\"figures\"><thead><tr><th>Figure</th><th class=\"num\">Value</th><th>Meaning</th></tr></thead>" +
-         html_ + "</tbody></table></div>\n";
+  return "<div class=\"card scroll\"><table class=\"figures\"><thead><tr>" + Headings({"Figure"}) + NumberHeadings({"Value"}) +
+         Headings({"Meaning"}) + "</tr></thead>" + html_ + kTableEnd + "\n";
 }
 
 std::string Chip(const std::string& label, const std::string& value, const std::string& css_class) {

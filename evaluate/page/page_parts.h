@@ -1,6 +1,9 @@
-// Pieces of HTML that several sections of the report's page are made of. Values and legends are HTML; other texts are escaped here.
+// Pieces of HTML that several sections of the report's page are made of. Titles, headings, sentences, values and legends are HTML; other texts are
+// escaped here.
 #pragma once
 
+#include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -11,6 +14,48 @@ namespace skyquilt::evaluate::page {
 using namespace skyquilt::page;  // This page is made of the parts of every page of the program, and of those here.
 
 inline constexpr const char* kDegree = "\xC2\xB0";
+
+// Opens a <section> of the page with its title, and `beside` on the same line.
+std::string SectionBegin(const char* id, const char* title, const std::string& beside = "");
+// Opens a <div> of a section with its title, and what is to be known first.
+std::string BlockBegin(const std::string& title, const std::string& lead = "");
+// Paragraphs: what is to be known first, what is said below, and that there is nothing to show.
+inline std::string Lead(const std::string& sentences) {
+  return "<p class=\"lead\">" + sentences + "</p>";
+}
+inline std::string Note(const std::string& sentences) {
+  return "<p class=\"note\">" + sentences + "</p>";
+}
+inline std::string EmptyCard(const std::string& sentence) {
+  return "<p class=\"card empty\">" + sentence + "</p>";
+}
+// A row of small figures: what Chip made.
+inline std::string Chips(const std::string& chips) {
+  return "<div class=\"chips\">" + chips + "</div>";
+}
+
+// Headings of columns of texts, and of numbers.
+std::string Headings(std::initializer_list<const char*> names);
+std::string NumberHeadings(std::initializer_list<const char*> names);
+// Opens a table up to its first row. css_class: sortable where the reader can sort it by a column.
+std::string TableBegin(const std::string& headings, const std::string& css_class = "sortable");
+inline constexpr const char* kTableEnd = "</tbody></table></div>";
+// Cells of numbers, by which the table sorts, as FormatFixed, FormatInteger and FormatPercent show them.
+inline std::string FixedCell(double value, int decimals, const char* unit = "") {
+  return NumberCell(value, FormatFixed(value, decimals, unit));
+}
+inline std::string CountCell(int64_t count) {
+  return NumberCell(static_cast<double>(count), FormatInteger(count));
+}
+inline std::string PercentCell(double share, int decimals = 1) {
+  return NumberCell(share, FormatPercent(share, decimals));
+}
+// With a bar over this share of the cell.
+std::string BarCell(double value, double share, const std::string& shown);
+// A word about the state of something. kind: good, warn, bad or idle.
+inline std::string State(const std::string& kind, const std::string& word) {
+  return "<span class=\"state " + kind + "\">" + word + "</span>";
+}
 
 // A table of figures in groups: name, value and what it means in one sentence. Values are HTML.
 class FigureTable {

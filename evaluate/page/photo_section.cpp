@@ -47,46 +47,41 @@ std::string PhotoCard(const ReportInput& input, size_t index) {
 
 std::string PhotoTable(const ReportInput& input) {
   const bool truth = input.metrics->has_truth;
-  std::string html =
-      "<div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>Held-out photo</th><th class=\"num\">PSNR</th><th class=\"num\">SSIM</th>"
-      "<th class=\"num\">FLIP</th>"
-      "<th class=\"num\">Coverage</th><th class=\"num\">PSNR, full frame</th><th class=\"num\">SSIM, full frame</th>"
-      "<th class=\"num\">FLIP, full frame</th><th class=\"num\">LPIPS</th>";
-  if (truth) html += "<th class=\"num\">Depth error, RMSE</th><th class=\"num\">Depth error, median</th>";
-  html += "<th class=\"num\">Exposure gain</th><th class=\"num\">Size</th><th class=\"num\">Render time</th></tr></thead><tbody>";
+  std::string columns = Headings({"Held-out photo"}) +
+                        NumberHeadings({"PSNR", "SSIM", "FLIP", "Coverage", "PSNR, full frame", "SSIM, full frame", "FLIP, full frame", "LPIPS"});
+  if (truth) columns += NumberHeadings({"Depth error, RMSE", "Depth error, median"});
+  std::string html = TableBegin(columns + NumberHeadings({"Exposure gain", "Size", "Render time"}));
   for (size_t i = 0; i < input.metrics->photos.size(); ++i) {
     const photos::PhotoScore& score = input.metrics->photos[i];
     const bool pictured = i < input.images.size() && !input.images[i].photo.empty();
     html += pictured ? fmt::format("<tr><td><a href=\"#photo-{}\">{}</a></td>", i, EscapeHtml(score.name)) : "<tr>" + TextCell(score.name);
-    html += NumberCell(score.psnr_db, FormatFixed(score.psnr_db, 2, "dB")) + NumberCell(score.ssim, FormatFixed(score.ssim, 3));
-    html += NumberCell(score.flip, FormatFixed(score.flip, 3));
-    html += NumberCell(score.Coverage(), FormatPercent(score.Coverage()));
-    html += NumberCell(score.psnr_full_db, FormatFixed(score.psnr_full_db, 2, "dB")) + NumberCell(score.ssim_full, FormatFixed(score.ssim_full, 3));
-    html += NumberCell(score.flip_full, FormatFixed(score.flip_full, 3));
-    html += NumberCell(score.lpips, FormatFixed(score.lpips, 3));
-    if (truth) {
-      html += NumberCell(score.depth_rmse_m, FormatFixed(score.depth_rmse_m, 2, "m"));
-      html += NumberCell(score.depth_median_abs_m, FormatFixed(score.depth_median_abs_m, 2, "m"));
-    }
-    html += NumberCell(score.exposure_gain, FormatFixed(score.exposure_gain, 3));
+    html += FixedCell(score.psnr_db, 2, "dB") + FixedCell(score.ssim, 3) + FixedCell(score.flip, 3) + PercentCell(score.Coverage()) +
+            FixedCell(score.psnr_full_db, 2, "dB") + FixedCell(score.ssim_full, 3) + FixedCell(score.flip_full, 3) + FixedCell(score.lpips, 3);
+    if (truth) html += FixedCell(score.depth_rmse_m, 2, "m") + FixedCell(score.depth_median_abs_m, 2, "m");
+    html += FixedCell(score.exposure_gain, 3);
     html += NumberCell(score.width, fmt::format("{} \xC3\x97 {}", score.width, score.height));
-    html += NumberCell(score.render_seconds, FormatFixed(score.render_seconds, 2, "s")) + "</tr>";
+    html += FixedCell(score.render_seconds, 2, "s") + "</tr>";
   }
-  return html + "</tbody></table></div>\n";
+  return html + kTableEnd + "\n";
 }
 
 }  // namespace
 
 std::string PhotoSection(const ReportInput& input) {
-  std::string html = "<section id=\"photos\"><div class=\"heading\"><h2>Held-out photos</h2>";
-  if (input.metrics->photos.empty()) return html + "</div><p class=\"card empty\">No photo was scored.</p></section>\n";
-  html +=
+  if (input.metrics->photos.empty()) {
+    return SectionBegin("photos", "Held-out photos") + EmptyCard("No photo was scored.") + "</section>\n";
+  }
+  const std::string controls =
       "<div class=\"controls\"><div class=\"segmented\" role=\"group\" aria-label=\"View\"><button data-view=\"side\" class=\"on\">Side by "
       "side</button><button data-view=\"slide\">Slider</button></div><label>Order <select id=\"order\"><option value=\"name\">by "
-      "name</option><option value=\"worst\">worst first</option><option value=\"best\">best first</option></select></label></div></div>"
-      "<p class=\"lead\">These photos were kept out of training, so they test the result. Error is the mean absolute difference of red, green and "
-      "blue in display values from 0 to 1. Grey pixels do not count: fewer than two training photos see them, or a mask excludes them. <span "
-      "class=\"screen\">Click a picture to enlarge it.</span></p><div id=\"photo-list\">";
+      "name</option><option value=\"worst\">worst first</option><option value=\"best\">best first</option></select></label></div>";
+  std::string html =
+      SectionBegin("photos", "Held-out photos", controls) +
+      Lead(
+          "These photos were kept out of training, so they test the result. Error is the mean absolute difference of red, green and blue in display "
+          "values from 0 to 1. Grey pixels do not count: fewer than two training photos see them, or a mask excludes them. <span "
+          "class=\"screen\">Click a picture to enlarge it.</span>") +
+      "<div id=\"photo-list\">";
   size_t pictured = 0;
   for (size_t i = 0; i < input.metrics->photos.size() && i < input.images.size(); ++i) {
     if (input.images[i].photo.empty()) continue;
@@ -95,8 +90,7 @@ std::string PhotoSection(const ReportInput& input) {
   }
   html += "</div>";
   if (pictured < input.metrics->photos.size()) {
-    html += fmt::format("<p class=\"note\">Pictures are shown for {} of {} scored photos; the table has all of them.</p>", pictured,
-                        input.metrics->photos.size());
+    html += Note(fmt::format("Pictures are shown for {} of {} scored photos; the table has all of them.", pictured, input.metrics->photos.size()));
   }
   return html + PhotoTable(input) + "</section>\n";
 }

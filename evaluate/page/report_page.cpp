@@ -40,7 +40,7 @@ std::string BlockBars(const ReportInput& input) {
     const double share = std::isfinite(block->psnr_db) ? std::clamp((block->psnr_db - base) / std::max(high - base, 1e-9), 0.0, 1.0) : 0.0;
     html += BarRow(fmt::format("<a href=\"#block-{0}\">{0}</a>", EscapeHtml(block->name)), 100.0 * share, FormatFixed(block->psnr_db, 2, "dB"));
   }
-  return html + fmt::format("</div><p class=\"note\">The bars start at {}.</p></div>", FormatFixed(base, 0, "dB"));
+  return html + "</div>" + Note("The bars start at " + FormatFixed(base, 0, "dB") + ".") + "</div>";
 }
 
 std::string BlockFacts(const ReportInput& input) {
@@ -71,16 +71,15 @@ std::string OrthophotoLabel(const MapBackground& background) {
 
 std::string MapSection(const ReportInput& input) {
   std::string html =
-      "<section id=\"map-section\"><div class=\"heading\"><h2>Map and blocks</h2></div><p class=\"lead\">The ground is cut into blocks, and each "
-      "block is trained by itself. The figure in a block is the PSNR of the held-out photos there.</p><div class=\"map-grid\"><div class=\"card "
-      "map-card\">" +
-      BlockMapSvg(input);
+      SectionBegin("map-section", "Map and blocks") +
+      Lead("The ground is cut into blocks, and each block is trained by itself. The figure in a block is the PSNR of the held-out photos there.") +
+      "<div class=\"map-grid\"><div class=\"card map-card\">" + BlockMapSvg(input);
   html += "<div class=\"toggles\">";
   if (input.background) html += Toggle("ortho", OrthophotoLabel(*input.background), "k-ortho");
   html += Toggle("blocks", "Blocks and margins", "k-block") + Toggle("cameras", "Training photos", "k-camera") +
           Toggle("tests", "Held-out photos", "k-test");
   if (input.survey->georeferenced) html += Toggle("gps", "GPS tracks", "k-gps");
-  return html + "</div></div>" + "<div class=\"side\">" + BlockBars(input) + BlockFacts(input) + "</div></div>" + BlockTable(input) + "</section>\n";
+  return html + "</div></div><div class=\"side\">" + BlockBars(input) + BlockFacts(input) + "</div></div>" + BlockTable(input) + "</section>\n";
 }
 
 // Where the time of all training steps went.
@@ -101,8 +100,10 @@ std::string PhaseBars(const ReportInput& input) {
   for (const auto& [phase, seconds] : phases) {
     html += BarRow("<em>" + EscapeHtml(phase) + "</em>", 100.0 * seconds / phases.front().second, FormatFixed(100.0 * seconds / total, 1, "%"));
   }
-  return html + fmt::format("</div><p class=\"note\">{} of work, summed over all threads. {} samples per ray.</p></div>", ShownDuration(total),
-                            FormatFixed(input.training->SamplesPerRay(), 1));
+  return html + "</div>" +
+         Note(fmt::format("{} of work, summed over all threads. {} samples per ray.", ShownDuration(total),
+                          FormatFixed(input.training->SamplesPerRay(), 1))) +
+         "</div>";
 }
 
 std::string TrainingSection(const ReportInput& input) {
@@ -121,7 +122,7 @@ std::string TrainingSection(const ReportInput& input) {
     loss.push_back(std::move(loss_curve));
     psnr.push_back(std::move(psnr_curve));
   }
-  return "<section id=\"training\"><div class=\"heading\"><h2>Training</h2></div><div class=\"chart-grid\">" +
+  return SectionBegin("training", "Training") + "<div class=\"chart-grid\">" +
          CurveChart(loss, {.title = "Loss", .x_label = "training time of the block (s)", .y_label = "loss", .log_y = true}) +
          CurveChart(psnr, {.title = "PSNR of the training rays", .x_label = "training time of the block (s)", .y_label = "PSNR (dB)"}) +
          PhaseBars(input) + "</div></section>\n";

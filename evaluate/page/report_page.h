@@ -1,7 +1,6 @@
 // report/index.html: one page that opens offline; style and script inside, pictures as files beside it.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "evaluate/metrics/metrics.h"
 #include "evaluate/metrics/training_curve.h"
 #include "evaluate/page/brightness_report.h"
+#include "evaluate/page/drawn_map.h"
 #include "evaluate/page/input_files.h"
 #include "partition/block.h"
 
@@ -30,14 +30,6 @@ struct PhotoImages {
   int height = 0;
   double depth_low_m = kNotMeasured;  // range of the depth colours
   double depth_high_m = kNotMeasured;
-};
-
-// A picture under the block map, north up.
-struct MapBackground {
-  std::string image;                                  // relative to the page
-  Eigen::Vector2d min_enu = Eigen::Vector2d::Zero();  // metres
-  Eigen::Vector2d max_enu = Eigen::Vector2d::Zero();
-  std::string preview = {};  // what a preview of the orthophoto was made from; empty for the orthophoto
 };
 
 struct ReportInput {

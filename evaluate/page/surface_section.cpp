@@ -14,14 +14,6 @@ namespace {
 constexpr const char* kDash = "\xE2\x80\x93";
 constexpr double kClassTau = 2.0;  // ground sampling distances, in the table by class
 
-std::string ShareCell(double share) {
-  return NumberCell(share, FormatPercent(share));
-}
-
-std::string DecibelCell(double value_db) {
-  return NumberCell(value_db, FormatFixed(value_db, 2, "dB"));
-}
-
 std::string CountOrDash(int64_t count) {
   return count < 0 ? kDash : FormatInteger(count);
 }
@@ -60,16 +52,15 @@ std::string MadeFacts(const surface::SurfaceScores& scores) {
 
 std::string FileTable(const surface::SurfaceRecord& record) {
   if (record.files.empty()) return "";
-  std::string html =
-      "<div class=\"block\"><h3>What was made</h3><div class=\"card scroll\"><table class=\"sortable\"><thead><tr><th>File</th><th>Content</th>"
-      "<th>Format</th><th>Coordinates</th><th>Heights above</th><th class=\"num\">Size</th><th>Detail</th></tr></thead><tbody>";
+  std::string html = BlockBegin("What was made") + TableBegin(Headings({"File", "Content", "Format", "Coordinates", "Heights above"}) +
+                                                              NumberHeadings({"Size"}) + Headings({"Detail"}));
   for (const surface::SurfaceFile& file : record.files) {
     const std::string name = EscapeHtml(file.file);
     html += fmt::format("<tr><td><a href=\"../surface/{0}\">{0}</a></td>", name);
     for (const std::string* text : {&file.content, &file.format, &file.crs, &file.vertical}) html += TextCell(text->empty() ? kDash : *text);
     html += NumberCell(static_cast<double>(file.bytes), FormatBytes(file.bytes)) + TextCell(file.detail) + "</tr>";
   }
-  return html + "</tbody></table></div></div>\n";
+  return html + kTableEnd + "</div>\n";
 }
 
 std::string MeshCards(const ReportInput& input) {
@@ -89,14 +80,13 @@ std::string MeshCards(const ReportInput& input) {
 // Pictures of the mesh and the field, whole and by class.
 std::string PictureTable(const surface::SurfaceScores& scores) {
   if (scores.pixels == 0) return "";
-  std::string html =
-      "<div class=\"block\"><h3>Mesh beside the field in held-out photos</h3><p class=\"lead\">PSNR over the covered pixels. Where the mesh has a "
-      "hole its picture is black, which counts as an error. The first two rows are means over the photos; rows of classes pool the pixels of all "
-      "photos.</p><div class=\"card scroll\"><table><thead><tr><th>Pixels</th><th class=\"num\">Mesh</th><th class=\"num\">Field</th>"
-      "<th class=\"num\">Difference</th><th class=\"num\">Pixels without mesh</th></tr></thead><tbody>";
+  std::string html = BlockBegin("Mesh beside the field in held-out photos",
+                                "PSNR over the covered pixels. Where the mesh has a hole its picture is black, which counts as an error. The first "
+                                "two rows are means over the photos; rows of classes pool the pixels of all photos.") +
+                     TableBegin(Headings({"Pixels"}) + NumberHeadings({"Mesh", "Field", "Difference", "Pixels without mesh"}), "");
   const auto row = [&](const char* name, double mesh_db, double field_db, double missing_share) {
-    html +=
-        "<tr>" + TextCell(name) + DecibelCell(mesh_db) + DecibelCell(field_db) + DecibelCell(mesh_db - field_db) + ShareCell(missing_share) + "</tr>";
+    html += "<tr>" + TextCell(name) + FixedCell(mesh_db, 2, "dB") + FixedCell(field_db, 2, "dB") + FixedCell(mesh_db - field_db, 2, "dB") +
+            PercentCell(missing_share) + "</tr>";
   };
   row("all covered pixels", scores.psnr, scores.psnr_field, scores.missing_share);
   row("those with mesh", scores.psnr_where_mesh, scores.psnr_field_where_mesh, 0.0);
@@ -104,43 +94,38 @@ std::string PictureTable(const surface::SurfaceScores& scores) {
     if (score.pixels == 0) continue;
     row(score.name.c_str(), score.psnr_db, score.psnr_field_db, static_cast<double>(score.missing_pixels) / static_cast<double>(score.pixels));
   }
-  return html + "</tbody></table></div></div>\n";
+  return html + kTableEnd + "</div>\n";
 }
 
 std::string ScoreCells(const surface::SurfaceFScore& score) {
-  return ShareCell(score.precision) + ShareCell(score.recall) + ShareCell(score.f);
+  return PercentCell(score.precision) + PercentCell(score.recall) + PercentCell(score.f);
 }
 
 std::string DistanceTables(const surface::SurfaceScores& scores) {
   if (scores.agreement.f_scores.empty()) return "";
-  constexpr const char* kColumns = "<th class=\"num\">Precision</th><th class=\"num\">Recall</th><th class=\"num\">F-score</th>";
-  std::string html =
-      "<div class=\"block\"><h3>Mesh against the true surface</h3><p class=\"lead\">Precision is the share of the mesh that is nearer to the true "
-      "surface than the distance, recall the share of the true surface that is nearer to the mesh, and the F-score their harmonic mean. Only "
-      "surface counts that at least two training photos see. An error of the geo-reference counts too.</p><div class=\"card scroll\"><table>"
-      "<thead><tr><th>Distance</th><th class=\"num\">In metres</th>";
-  html += std::string(kColumns) + "</tr></thead><tbody>";
+  const std::string columns = NumberHeadings({"Precision", "Recall", "F-score"});
+  std::string html = BlockBegin("Mesh against the true surface",
+                                "Precision is the share of the mesh that is nearer to the true surface than the distance, recall the share of the "
+                                "true surface that is nearer to the mesh, and the F-score their harmonic mean. Only surface counts that at least two "
+                                "training photos see. An error of the geo-reference counts too.") +
+                     TableBegin(Headings({"Distance"}) + NumberHeadings({"In metres"}) + columns, "");
   for (const surface::SurfaceFScore& score : scores.agreement.f_scores) {
-    html += "<tr>" + TextCell(score.tau) + NumberCell(score.tau_m, FormatFixed(score.tau_m, 3, "m")) + ScoreCells(score) + "</tr>";
+    html += "<tr>" + TextCell(score.tau) + FixedCell(score.tau_m, 3, "m") + ScoreCells(score) + "</tr>";
   }
-  html += fmt::format(
-      "</tbody></table></div><p class=\"note\">Median distance from the mesh to the true surface {}, from the true surface to the mesh {}.",
-      Centimetres(scores.agreement.accuracy_median_m), Centimetres(scores.agreement.completeness_median_m));
+  std::string note = fmt::format("Median distance from the mesh to the true surface {}, from the true surface to the mesh {}.",
+                                 Centimetres(scores.agreement.accuracy_median_m), Centimetres(scores.agreement.completeness_median_m));
   if (scores.deck_samples > 0) {
-    html += fmt::format(
+    note += fmt::format(
         " On flat roofs, {} of the mesh is within 2 GSD of the height of the deck, apart from what is within 1 m of an edge or of something that "
         "stands there.",
         FormatPercent(scores.decks_within_2_gsd, 2));
   }
-  html += "</p>";
+  html += kTableEnd + Note(note) + "</div>\n";
   const bool by_class = std::any_of(scores.classes.begin(), scores.classes.end(),
                                     [](const surface::SurfaceClassScore& score) { return FindTau(score.agreement, kClassTau) != nullptr; });
-  html += "</div>\n";
   if (!by_class) return html;
-  html += fmt::format(
-      "<div class=\"block\"><h3>By class, at {:.0f} GSD</h3><div class=\"card scroll\"><table><thead><tr><th>Surface</th>{}<th class=\"num\">"
-      "Mesh to truth, median</th><th class=\"num\">Truth to mesh, median</th></tr></thead><tbody>",
-      kClassTau, kColumns);
+  html += BlockBegin(fmt::format("By class, at {:.0f} GSD", kClassTau)) +
+          TableBegin(Headings({"Surface"}) + columns + NumberHeadings({"Mesh to truth, median", "Truth to mesh, median"}), "");
   for (const surface::SurfaceClassScore& score : scores.classes) {
     const surface::SurfaceFScore* at_tau = FindTau(score.agreement, kClassTau);
     if (at_tau == nullptr) continue;
@@ -148,7 +133,7 @@ std::string DistanceTables(const surface::SurfaceScores& scores) {
     html += "<tr>" + TextCell(score.name) + ScoreCells(*at_tau) + NumberCell(accuracy_m, Centimetres(accuracy_m)) +
             NumberCell(completeness_m, Centimetres(completeness_m)) + "</tr>";
   }
-  return html + "</tbody></table></div></div>\n";
+  return html + kTableEnd + "</div>\n";
 }
 
 }  // namespace
@@ -156,15 +141,16 @@ std::string DistanceTables(const surface::SurfaceScores& scores) {
 std::string SurfaceSection(const ReportInput& input) {
   if (!input.metrics->surface) return "";
   const surface::SurfaceScores& scores = *input.metrics->surface;
-  std::string html = "<section id=\"surface\"><div class=\"heading\"><h2>Surface</h2><div class=\"chips\">";
-  if (std::isfinite(scores.psnr)) html += Chip("PSNR of the mesh", FormatFixed(scores.psnr, 2, "dB"), "main");
+  std::string chips;
+  if (std::isfinite(scores.psnr)) chips += Chip("PSNR of the mesh", FormatFixed(scores.psnr, 2, "dB"), "main");
   if (const surface::SurfaceFScore* at_tau = FindTau(scores.agreement, kClassTau)) {
-    html += Chip(fmt::format("F-score at {:.0f} GSD", kClassTau), FormatPercent(at_tau->f));
+    chips += Chip(fmt::format("F-score at {:.0f} GSD", kClassTau), FormatPercent(at_tau->f));
   }
-  html +=
-      "</div></div><p class=\"lead\">A textured mesh was made from the field, and from it the files below. The mesh is compared with photos that "
-      "were kept out of training, beside the field itself.</p>";
-  return html + MadeFacts(scores) + FileTable(scores.record) + MeshCards(input) + PictureTable(scores) + DistanceTables(scores) + "</section>\n";
+  return SectionBegin("surface", "Surface", Chips(chips)) +
+         Lead(
+             "A textured mesh was made from the field, and from it the files below. The mesh is compared with photos that were "
+             "kept out of training, beside the field itself.") +
+         MadeFacts(scores) + FileTable(scores.record) + MeshCards(input) + PictureTable(scores) + DistanceTables(scores) + "</section>\n";
 }
 
 }  // namespace skyquilt::evaluate::page

@@ -37,8 +37,8 @@ void AddWall(const Eigen::Vector2d& from, const Eigen::Vector2d& to, evaluate::s
 evaluate::surface::TrueSurface BoxOnGround() {
   evaluate::surface::TrueSurface truth;
   truth.middle = {3.0, -2.0, 1.0};
-  evaluate::AddPlate({-60, -60, 60, 60, 0}, SurfaceClass::kGround, &truth);
-  evaluate::AddPlate({kWest_m, kSouth_m, kEast_m, kNorth_m, kDeck_m}, SurfaceClass::kRoof, &truth);
+  evaluate::surface::AddPlate({-60, -60, 60, 60, 0}, SurfaceClass::kGround, &truth);
+  evaluate::surface::AddPlate({kWest_m, kSouth_m, kEast_m, kNorth_m, kDeck_m}, SurfaceClass::kRoof, &truth);
   const std::vector<Eigen::Vector2d> ring = {{kWest_m, kSouth_m}, {kEast_m, kSouth_m}, {kEast_m, kNorth_m}, {kWest_m, kNorth_m}};
   for (size_t i = 0; i < ring.size(); ++i) AddWall(ring[i], ring[(i + 1) % ring.size()], &truth);
   return truth;

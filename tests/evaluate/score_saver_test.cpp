@@ -31,7 +31,7 @@ struct RandomPhoto {
       const double otherwise = random.Uniform(0.0, 1.0) < 0.5 ? kNan : kInfinity;
       return some(value, otherwise);
     };
-    const photos::TrainingView view = NadirView(0, 0, 100);
+    const photos::TrainingView view = photos::NadirView(0, 0, 100);
     photo.task.camera = view.camera.Resized(kSavedWidth, kSavedHeight);
     photo.task.cam_from_enu = view.cam_from_enu;
     photo.task.photo = image::Image8(kSavedWidth, kSavedHeight, 3);

@@ -22,7 +22,7 @@ struct Surface {
   photos::PhotoResult findings;
 
   Surface() {
-    const photos::TrainingView view = NadirView(0, 0, 100);
+    const photos::TrainingView view = photos::NadirView(0, 0, 100);
     task.camera = view.camera;
     task.cam_from_enu = view.cam_from_enu;
     findings.scored = image::Image8(kClassesWidth, kClassesHeight, 1, 1);

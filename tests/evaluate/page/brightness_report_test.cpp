@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "core/base/progress.h"
+#include "core/image/image.h"
 #include "core/image/srgb.h"
 #include "tests/support/temporary_folder.h"
 

@@ -78,7 +78,7 @@ TEST(ShownMeasure, HasTwoDigitsOfUncertaintyAndAValueToMatch) {
 }
 
 TEST(BuildingsSection, HasMapTableCardsAndPlans) {
-  BuildingsPage page(Untrue(MadeTown(3)));
+  BuildingsPage page(Untrue(buildings::MadeTown(3)));
   skyquilt::buildings::Building& first = page.report.compared.set.buildings[0];
   first.measures.height_m.sigma = 0.1234;
   first.note = "only <seen> from above & far away";
@@ -119,15 +119,15 @@ TEST(BuildingsSection, HasMapTableCardsAndPlans) {
 }
 
 TEST(BuildingsSection, MarksWhatWasMissedAndInvented) {
-  skyquilt::buildings::BuildingSet set = MadeTown(5);
-  buildings::TrueBuildings truth = TruthOf(set);
+  skyquilt::buildings::BuildingSet set = buildings::MadeTown(5);
+  buildings::TrueBuildings truth = buildings::TruthOf(set);
   truth.outlines[4].inside = false;
   truth.outlines[0].kind = "<house>";
   set.buildings.erase(set.buildings.begin());
   skyquilt::buildings::HousePlan elsewhere;
   elsewhere.origin = {80.0, 80.0};
   set.buildings.push_back(skyquilt::buildings::MadeHouse(elsewhere, 77));
-  const BuildingsPage page(Compared(set, truth));
+  const BuildingsPage page(buildings::Compared(set, truth));
   const std::string html = BuildingsSection(page.input);
   ExpectSound(html);
   EXPECT_EQ(OccurrencesIn(html, "<path class=\"missed\""), 1U);
@@ -142,7 +142,7 @@ TEST(BuildingsSection, MarksWhatWasMissedAndInvented) {
 }
 
 TEST(BuildingsSection, OnlyTheLargestHaveCards) {
-  const BuildingsPage page(Untrue(MadeTown(70)));
+  const BuildingsPage page(Untrue(buildings::MadeTown(70)));
   const std::string html = BuildingsSection(page.input);
   ExpectSound(html);
   EXPECT_EQ(OccurrencesIn(html, "class=\"card photo building\""), buildings::kBuildingCards);
@@ -159,7 +159,7 @@ TEST(BuildingsSection, OnlyTheLargestHaveCards) {
 }
 
 TEST(BuildingsSection, WithoutAScaleThereIsNoUnit) {
-  skyquilt::buildings::BuildingSet set = MadeTown(3);
+  skyquilt::buildings::BuildingSet set = buildings::MadeTown(3);
   set.metric = false;
   set.scale_source = "unknown";
   set.buildings[0].measures.length_m.sigma = 0.25;
@@ -187,7 +187,7 @@ TEST(BuildingsSection, SaysInOneSentenceThatNothingWasFound) {
   EXPECT_EQ(html.find("<table"), std::string::npos);
   EXPECT_EQ(html.find("<svg"), std::string::npos);
   // With a truth it is known what was missed.
-  const BuildingsPage missed(Compared({}, TruthOf(MadeTown(3))));
+  const BuildingsPage missed(buildings::Compared({}, buildings::TruthOf(buildings::MadeTown(3))));
   const std::string all_missed = BuildingsSection(missed.input);
   ExpectSound(all_missed);
   EXPECT_EQ(OccurrencesIn(all_missed, "<path class=\"missed\""), 3U);
@@ -195,7 +195,7 @@ TEST(BuildingsSection, SaysInOneSentenceThatNothingWasFound) {
 }
 
 TEST(BuildingsSection, IsAbsentWhenNoBuildingsWereSearched) {
-  BuildingsPage page(Untrue(MadeTown(1)));
+  BuildingsPage page(Untrue(buildings::MadeTown(1)));
   page.input.buildings = nullptr;
   EXPECT_EQ(BuildingsSection(page.input), "");
   EXPECT_EQ(BuildReportPage(page.input).find("#buildings"), std::string::npos);

@@ -20,7 +20,7 @@ constexpr Plate kGround{-10, -8, -4, 8, 0.0}, kRoad{-4, -8, 0, 8, 0.0}, kRoof{0,
 // Ground and road in the west, a roof in the east, seen by two photos from 100 m up whose frames hold all of it.
 struct Place {
   TrueSurface truth;
-  std::vector<photos::TrainingView> training = {NadirView(0, 0, 100), NadirView(1, 0, 100)};
+  std::vector<photos::TrainingView> training = {photos::NadirView(0, 0, 100), photos::NadirView(1, 0, 100)};
   std::vector<geo::BlockBox> boxes = {{{-10, -8, -5}, {10, 8, 20}, 2.0}};
   base::ThreadPool threads{2};
 
@@ -135,7 +135,7 @@ TEST(CompareSurfaces, WaterAndPlacesOutsideTheSceneDoNotCount) {
 
 TEST(CompareSurfaces, TwoPhotosMustSeeIt) {
   Place place;
-  place.training = {NadirView(0, 0, 100)};
+  place.training = {photos::NadirView(0, 0, 100)};
   const SurfaceComparison one = place.Compare(MeshOf({kGround, kRoad, kRoof}));
   EXPECT_EQ(one.all.true_samples, 0);
   EXPECT_EQ(one.all.mesh_samples, 0);

@@ -48,7 +48,7 @@ void ExpectColor(const SurfacePicture& picture, int x, int y, const Eigen::Vecto
 TEST(SurfacePainter, ShowsTheTextureWhereItIs) {
   base::ThreadPool threads(2);
   const SurfaceMesh mesh({PaintedTile(kFrame, FourColors())});
-  const photos::TrainingView view = NadirView(0, 0, 40);
+  const photos::TrainingView view = photos::NadirView(0, 0, 40);
   const SurfacePicture picture = SurfacePainter(mesh).Paint(view.camera, view.cam_from_enu, threads);
   ASSERT_EQ(picture.colors.size(), static_cast<size_t>(kPictureWidth) * kPictureHeight);
   for (const int x : {3, 40}) {
@@ -64,7 +64,7 @@ TEST(SurfacePainter, ColorsBetweenTwoPixelsAreInterpolated) {
   image::Image8 grey(2, 1, 3, 0);
   for (int c = 0; c < 3; ++c) grey.At(1, 0)[c] = 200;
   const SurfaceMesh mesh({PaintedTile(kFrame, image::EncodeJpeg(grey, 100))});
-  const photos::TrainingView view = NadirView(0, 0, 40);
+  const photos::TrainingView view = photos::NadirView(0, 0, 40);
   const SurfacePicture picture = SurfacePainter(mesh).Paint(view.camera, view.cam_from_enu, threads);
   for (const int x : {0, 20, 40, 50, 60, 80, 99}) {
     const double share = std::clamp(2.0 * (x + 0.5) / kPictureWidth - 0.5, 0.0, 1.0);
@@ -76,7 +76,7 @@ TEST(SurfacePainter, TheNearestSurfaceHidesTheOthers) {
   base::ThreadPool threads(2);
   image::Image8 grey(64, 64, 3, 128);
   const SurfaceMesh mesh({PaintedTile(kFrame, FourColors()), PaintedTile({0, -16, 20, 16, 5.0}, image::EncodeJpeg(grey, 95))});
-  const photos::TrainingView view = NadirView(0, 0, 40);
+  const photos::TrainingView view = photos::NadirView(0, 0, 40);
   const SurfacePicture picture = SurfacePainter(mesh).Paint(view.camera, view.cam_from_enu, threads);
   ExpectColor(picture, 20, 30, {1, 0, 0});
   ExpectColor(picture, 70, 30, {0.5F, 0.5F, 0.5F});
@@ -84,7 +84,7 @@ TEST(SurfacePainter, TheNearestSurfaceHidesTheOthers) {
 
 TEST(SurfacePainter, NothingIsSeenBesideTheMesh) {
   base::ThreadPool threads(2);
-  const photos::TrainingView view = NadirView(0, 0, 40);
+  const photos::TrainingView view = photos::NadirView(0, 0, 40);
   const SurfaceMesh mesh({PaintedTile(kWest, FourColors()), PlateTile(kEast)});  // the eastern tile has no texture
   const SurfacePicture picture = SurfacePainter(mesh).Paint(view.camera, view.cam_from_enu, threads);
   for (int x = 0; x < kPictureWidth; ++x) {
@@ -102,7 +102,7 @@ TEST(SurfacePainter, DoesNotDependOnTheCacheOrTheThreads) {
   for (int i = 0; i < 8; ++i) tiles.push_back(PaintedTile({-20.0 + 5 * i, -16, -15.0 + 5 * i, 16, 0.1 * i}, FourColors()));
   const SurfaceMesh mesh(tiles);
   SurfacePainter small(mesh, 1), large(mesh);
-  const photos::TrainingView view = NadirView(2, 1, 40);
+  const photos::TrainingView view = photos::NadirView(2, 1, 40);
   for (int i = 0; i < 2; ++i) {
     const SurfacePicture a = small.Paint(view.camera, view.cam_from_enu, three), b = large.Paint(view.camera, view.cam_from_enu, one);
     EXPECT_EQ(a.has_mesh, b.has_mesh);

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "core/survey/geo_fit_json.h"
+#include "evaluate/json_members.h"
 
 namespace skyquilt::evaluate::buildings {
 namespace {
@@ -40,19 +40,6 @@ constexpr std::array<std::pair<const char*, double BuildingErrors::*>, 6> kError
 constexpr const char* kAllBuildings = "all";
 constexpr std::array<std::pair<const char*, BuildingOutcome::Fate>, 3> kFates = {
     {{"matched", BuildingOutcome::Fate::kMatched}, {"missed", BuildingOutcome::Fate::kMissed}, {"invented", BuildingOutcome::Fate::kInvented}}};
-
-// Null where a key is missing, and for what is not an object.
-const BuildingsJson& MemberAt(const BuildingsJson& json, const char* key) {
-  static const BuildingsJson kNone;
-  const auto found = json.is_object() ? json.find(key) : json.end();
-  return found == json.end() ? kNone : *found;
-}
-
-template <typename T>
-void TakeValue(const BuildingsJson& json, const char* key, T* value) {
-  const BuildingsJson& member = MemberAt(json, key);
-  if (std::is_integral_v<T> ? member.is_number_integer() : member.is_number()) *value = member.get<T>();
-}
 
 // Into an object that may have other keys already.
 void PutDetection(const BuildingDetection& score, BuildingsJson* json) {
@@ -120,9 +107,8 @@ std::optional<BuildingOutcome> TakeOutcome(const BuildingsJson& json) {
   outcome.fate = fate->second;
   TakeValue(json, "truth_id", &outcome.truth_id);
   TakeValue(json, "found_id", &outcome.found_id);
-  for (const auto& [key, text] : {std::pair{"roof", &outcome.roof}, {"roof_found", &outcome.roof_found}}) {
-    if (MemberAt(json, key).is_string()) *text = MemberAt(json, key).get<std::string>();
-  }
+  TakeValue(json, "roof", &outcome.roof);
+  TakeValue(json, "roof_found", &outcome.roof_found);
   TakeValue(json, "area_m2", &outcome.area_m2);
   TakeValue(json, "overlap", &outcome.overlap);
   const BuildingsJson& errors = MemberAt(json, "errors");
@@ -197,7 +183,7 @@ BuildingsJson ToJson(const BuildingScores& scores) {
 BuildingScores BuildingScoresFromJson(const BuildingsJson& json) {
   BuildingScores scores;
   for (const auto& [key, member] : kBuildingCounts) TakeValue(json, key, &(scores.*member));
-  if (MemberAt(json, "metric").is_boolean()) scores.metric = MemberAt(json, "metric").get<bool>();
+  TakeValue(json, "metric", &scores.metric);
   TakeValue(json, "gsd_m", &scores.gsd_m);
   TakeValue(json, "footprint_m2", &scores.footprint_m2);
   TakeValue(json, "volume_m3", &scores.volume_m3);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "evaluate/buildings/shared_areas.h"
+#include "evaluate/measured.h"
 
 namespace skyquilt::evaluate::buildings {
 namespace {
@@ -19,7 +20,7 @@ constexpr double kAnySize = std::numeric_limits<double>::infinity();
 constexpr std::array<SizeClass, 3> kSizes = {{{"all", 0.0, kAnySize}, {"10 to 50 m2", 0.0, 50.0}, {"over 50 m2", 50.0, kAnySize}}};
 
 double ShareOf(double part, double whole) {
-  return whole > 0.0 ? part / whole : std::numeric_limits<double>::quiet_NaN();
+  return whole > 0.0 ? part / whole : kNotMeasured;
 }
 
 // Areas of one outline or found building that counts.

@@ -1,19 +1,19 @@
 // Errors of the measures, roof kinds and corners of matched buildings.
 #pragma once
 
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "evaluate/buildings/building_scores.h"
 #include "evaluate/buildings/match_buildings.h"
+#include "evaluate/measured.h"
 
 namespace skyquilt::evaluate::buildings {
 
 // One measure of one matched building: found minus true, and the uncertainty that was claimed; NaN: not known.
 struct MeasureError {
   double error = 0.0;
-  double sigma = std::numeric_limits<double>::quiet_NaN();
+  double sigma = kNotMeasured;
 };
 // Errors that are not finite do not count.
 BuildingErrors SummariseErrors(const char* measure, std::span<const MeasureError> errors);

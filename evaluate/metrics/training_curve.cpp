@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "core/base/file.h"
+#include "evaluate/measured.h"
 
 namespace skyquilt::evaluate::metrics {
 
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::string> SplitLine(const std::string& line) {
   std::vector<std::string> cells;
@@ -26,9 +24,9 @@ std::vector<std::string> SplitLine(const std::string& line) {
 }
 
 double ParseNumber(const std::string& text) {
-  double value = kUnknown;
+  double value = kNotMeasured;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  return result.ec == std::errc() && result.ptr == text.data() + text.size() ? value : kUnknown;
+  return result.ec == std::errc() && result.ptr == text.data() + text.size() ? value : kNotMeasured;
 }
 
 }  // namespace
@@ -46,7 +44,7 @@ std::vector<CurvePoint> ParseCurve(const std::string& csv) {
   while (std::getline(stream, line)) {
     const std::vector<std::string> cells = SplitLine(line);
     if (cells.size() < header.size()) continue;
-    const auto cell = [&](size_t column) { return column < cells.size() ? ParseNumber(cells[column]) : kUnknown; };
+    const auto cell = [&](size_t column) { return column < cells.size() ? ParseNumber(cells[column]) : kNotMeasured; };
     const CurvePoint point{cell(step), cell(seconds), cell(loss), cell(psnr)};
     if (std::isfinite(point.step) || std::isfinite(point.seconds)) curve.push_back(point);
   }

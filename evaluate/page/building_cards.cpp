@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kUnfoldedCards = 12;
 
 // Measures of heights as a map has them.
-skyquilt::buildings::Measure OnMap(const buildings::BuildingsReport& report, size_t index, skyquilt::buildings::Measure height) {
+buildings::Measure OnMap(const buildings::BuildingsReport& report, size_t index, buildings::Measure height) {
   if (index < report.map_height_m.size()) height.value += report.map_height_m[index];
   return height;
 }
@@ -30,23 +30,21 @@ std::string FateChip(const buildings::BuildingsReport& report, size_t index) {
   return "";
 }
 
-std::string StateOf(const skyquilt::buildings::Building& building) {
+std::string StateOf(const buildings::Building& building) {
   return building.accepted ? State("good", "fits") : State("warn", "fits poorly");
 }
 
 std::string FactsOf(const buildings::BuildingsReport& report, size_t index) {
-  const skyquilt::buildings::Building& building = report.compared.set.buildings[index];
+  const buildings::Building& building = report.compared.set.buildings[index];
   const skyquilt::buildings::Measures& measures = building.measures;
   const BuildingUnits units = BuildingUnits::Of(report.compared.set);
   std::string html = "<dl class=\"facts small\">";
-  const auto fact = [&](const char* name, const skyquilt::buildings::Measure& measure, const char* unit) {
-    html += Fact(name, ShownMeasure(measure, unit));
-  };
+  const auto fact = [&](const char* name, const buildings::Measure& measure, const char* unit) { html += Fact(name, ShownMeasure(measure, unit)); };
   fact("Height", measures.height_m, units.length);
   fact("Length", measures.length_m, units.length);
   fact("Width", measures.width_m, units.length);
   fact("Ground", OnMap(report, index, measures.ground_m), units.length);
-  if (building.roof == skyquilt::buildings::RoofKind::kGable || building.roof == skyquilt::buildings::RoofKind::kHip) {
+  if (building.roof == buildings::RoofKind::kGable || building.roof == buildings::RoofKind::kHip) {
     fact("Eave", OnMap(report, index, measures.eave_m), units.length);
     fact("Ridge", OnMap(report, index, measures.ridge_m), units.length);
     fact("Pitch", measures.pitch_deg, kDegree);
@@ -62,7 +60,7 @@ std::string FactsOf(const buildings::BuildingsReport& report, size_t index) {
 }
 
 std::string CardOf(const buildings::BuildingsReport& report, size_t index) {
-  const skyquilt::buildings::Building& building = report.compared.set.buildings[index];
+  const buildings::Building& building = report.compared.set.buildings[index];
   std::string html = fmt::format("<article class=\"card photo building\" id=\"building-{0}\"><header><h3>Building {0}{1}</h3><div class=\"chips\">",
                                  building.id, building.given_id.empty() ? "" : " (" + EscapeHtml(building.given_id) + ")");
   html += fmt::format("<span class=\"chip\"><b>{}</b>roof</span>", NameOf(building.roof)) +
@@ -100,7 +98,7 @@ std::string BuildingCards(const buildings::BuildingsReport& report) {
 }
 
 std::string BuildingsTable(const buildings::BuildingsReport& report) {
-  const skyquilt::buildings::BuildingSet& set = report.compared.set;
+  const buildings::BuildingSet& set = report.compared.set;
   if (set.buildings.empty()) return "";
   const BuildingUnits units = BuildingUnits::Of(set);
   const buildings::BuildingMatches& matches = report.compared.matches;
@@ -113,7 +111,7 @@ std::string BuildingsTable(const buildings::BuildingsReport& report) {
   if (report.compared.truth) columns += Headings({"Truth"}) + NumberHeadings({"Overlap"});
   std::string html = TableBegin(columns + Headings({"Note"}));
   for (size_t i = 0; i < set.buildings.size(); ++i) {
-    const skyquilt::buildings::Building& building = set.buildings[i];
+    const buildings::Building& building = set.buildings[i];
     const skyquilt::buildings::Measures& measures = building.measures;
     html += fmt::format("<tr id=\"building-row-{0}\"><td class=\"num\" data-v=\"{0}\">", building.id);
     html += (carded[i] ? fmt::format("<a href=\"#building-{0}\">{0}</a>", building.id) : std::to_string(building.id)) + "</td>";

@@ -19,7 +19,7 @@ constexpr double kShortestLabelled_px = 30.0;
 // The plan in pixels: the longer side of the shape across, u or v.
 class PlanDrawing {
  public:
-  PlanDrawing(const skyquilt::buildings::Building& building, const skyquilt::buildings::BuildingSet& set)
+  PlanDrawing(const buildings::Building& building, const buildings::BuildingSet& set)
       : building_(building), scale_to_metres_(set.scale), unit_(BuildingUnits::Of(set).length) {
     Eigen::AlignedBox2d box;
     for (const Eigen::Vector2d& corner : building.footprint.outer) box.extend(building.shape.FromEnu(corner));
@@ -69,11 +69,11 @@ class PlanDrawing {
       path += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", from.x(), from.y(), to.x(), to.y());
     };
     for (const skyquilt::buildings::Part& part : building_.shape.parts) {
-      if (part.roof != skyquilt::buildings::RoofKind::kGable && part.roof != skyquilt::buildings::RoofKind::kHip) continue;
+      if (part.roof != buildings::RoofKind::kGable && part.roof != buildings::RoofKind::kHip) continue;
       const Eigen::Vector2d low = building_.shape.MinOf(part, true), high = building_.shape.MaxOf(part, true);
       const Eigen::Vector2d along = part.along_u ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
       const Eigen::Vector2d middle = 0.5 * (low + high), half = 0.5 * (high - low);
-      const bool hip = part.roof == skyquilt::buildings::RoofKind::kHip;
+      const bool hip = part.roof == buildings::RoofKind::kHip;
       // The slopes of a hip roof are equally steep, so the ridge ends as far from the short sides as from the long ones.
       const double reach = along.dot(half) - (hip ? std::min(half.x(), half.y()) : 0.0);
       const Eigen::Vector2d from = middle - reach * along, to = middle + reach * along;
@@ -115,7 +115,7 @@ class PlanDrawing {
                        degrees);
   }
 
-  const skyquilt::buildings::Building& building_;
+  const buildings::Building& building_;
   double scale_to_metres_;
   const char* unit_;
   bool turned_ = false;
@@ -125,7 +125,7 @@ class PlanDrawing {
 
 }  // namespace
 
-std::string BuildingPlan(const skyquilt::buildings::Building& building, const skyquilt::buildings::BuildingSet& set) {
+std::string BuildingPlan(const buildings::Building& building, const buildings::BuildingSet& set) {
   return PlanDrawing(building, set).Svg();
 }
 

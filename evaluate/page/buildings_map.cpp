@@ -38,7 +38,7 @@ class BuildingsMapDrawing {
         units_(BuildingUnits::Of(set_)),
         frame_(BoundsOf(input)),
         carded_(set_.buildings.size()) {
-    for (const skyquilt::buildings::Building& building : set_.buildings) {
+    for (const buildings::Building& building : set_.buildings) {
       const double height = building.measures.height_m.value;
       if (!std::isfinite(height)) continue;
       low_ = std::min(low_, height);
@@ -58,7 +58,7 @@ class BuildingsMapDrawing {
   static MapBounds BoundsOf(const ReportInput& input) {
     MapBounds bounds;
     const buildings::ComparedBuildings& compared = input.buildings->compared;
-    for (const skyquilt::buildings::Building& building : compared.set.buildings) {
+    for (const buildings::Building& building : compared.set.buildings) {
       for (const Eigen::Vector2d& corner : building.footprint.outer) bounds.Include(corner);
     }
     for (size_t t = 0; t < compared.matches.truth.size(); ++t) {
@@ -68,7 +68,7 @@ class BuildingsMapDrawing {
     return bounds;
   }
 
-  std::string PathOf(const skyquilt::buildings::Polygon& polygon) const {
+  std::string PathOf(const buildings::Polygon& polygon) const {
     std::string path;
     const auto add = [&](const std::vector<Eigen::Vector2d>& ring) {
       for (size_t i = 0; i < ring.size(); ++i)
@@ -83,7 +83,7 @@ class BuildingsMapDrawing {
   buildings::FoundFate FateOf(size_t index) const { return matches_.found.empty() ? buildings::FoundFate::kMatched : matches_.found[index]; }
 
   std::string Title(size_t index) const {
-    const skyquilt::buildings::Building& building = set_.buildings[index];
+    const buildings::Building& building = set_.buildings[index];
     const skyquilt::buildings::Measures& measures = building.measures;
     std::string title = fmt::format("Building {}, {} roof\nheight {}\nlength {}, width {}", building.id, NameOf(building.roof),
                                     ShownMeasure(measures.height_m, units_.length), ShownMeasure(measures.length_m, units_.length),
@@ -95,7 +95,7 @@ class BuildingsMapDrawing {
   std::string Footprints() const {
     std::string svg;
     for (size_t i = 0; i < set_.buildings.size(); ++i) {
-      const skyquilt::buildings::Building& building = set_.buildings[i];
+      const buildings::Building& building = set_.buildings[i];
       const double height = building.measures.height_m.value;
       const std::string color = std::isfinite(height) ? HeightColor((height - low_) / std::max(high_ - low_, 1e-9)) : kUnknownColor;
       svg += fmt::format(
@@ -122,7 +122,7 @@ class BuildingsMapDrawing {
   // Where a footprint is large enough; the others have their tooltip.
   std::string Numbers() const {
     std::string svg;
-    for (const skyquilt::buildings::Building& building : set_.buildings) {
+    for (const buildings::Building& building : set_.buildings) {
       if (building.footprint.outer.empty()) continue;
       MapBounds bounds;
       for (const Eigen::Vector2d& corner : building.footprint.outer) bounds.Include(corner);
@@ -143,7 +143,7 @@ class BuildingsMapDrawing {
       legend += fmt::format("<span class=\"ramp\">height {}<i style=\"background:linear-gradient(90deg,{})\"></i>{}</span>", FormatFixed(low_, 1),
                             colors, FormatFixed(high_, 1, units_.length));
     }
-    if (std::any_of(set_.buildings.begin(), set_.buildings.end(), [](const skyquilt::buildings::Building& b) { return !b.accepted; })) {
+    if (std::any_of(set_.buildings.begin(), set_.buildings.end(), [](const buildings::Building& b) { return !b.accepted; })) {
       legend += LegendEntry("k-unsure", "the model does not fit well");
     }
     if (std::count(matches_.truth.begin(), matches_.truth.end(), buildings::TrueFate::kMissed) > 0)
@@ -156,7 +156,7 @@ class BuildingsMapDrawing {
   }
 
   const ReportInput& input_;
-  const skyquilt::buildings::BuildingSet& set_;
+  const buildings::BuildingSet& set_;
   const buildings::BuildingMatches& matches_;
   BuildingUnits units_;
   DrawnMap frame_;

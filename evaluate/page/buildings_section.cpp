@@ -78,7 +78,7 @@ std::string RoofNote(const buildings::BuildingTruthScores& truth) {
 }
 
 std::string ScaleSentence(const buildings::BuildingsReport& report) {
-  const skyquilt::buildings::BuildingSet& set = report.compared.set;
+  const buildings::BuildingSet& set = report.compared.set;
   if (!set.metric) {
     return " Lengths have no unit, because the scale is unknown: photos with GPS tags, or a length measured on site (buildings.scale_bar), would "
            "give it.";
@@ -132,7 +132,7 @@ std::string BuildingsSection(const ReportInput& input) {
   if (input.buildings == nullptr || !input.metrics->buildings) return "";
   const buildings::BuildingsReport& report = *input.buildings;
   const buildings::BuildingScores& scores = *input.metrics->buildings;
-  const skyquilt::buildings::BuildingSet& set = report.compared.set;
+  const buildings::BuildingSet& set = report.compared.set;
   if (set.buildings.empty()) {
     return SectionBegin("buildings", "Buildings") + EmptyCard("No buildings were found.") + "\n" +
            (report.compared.truth && !report.compared.truth->outlines.empty() ? BuildingsMap(input) : "") + BuildingScoreTables(scores) +

@@ -16,6 +16,6 @@ std::string BuildingCards(const buildings::BuildingsReport& report);
 // Figures against the truth; empty without.
 std::string BuildingScoreTables(const buildings::BuildingScores& scores);
 // The footprint along its axes with the lengths of its walls and the lines of its roof, as SVG.
-std::string BuildingPlan(const skyquilt::buildings::Building& building, const skyquilt::buildings::BuildingSet& set);
+std::string BuildingPlan(const buildings::Building& building, const buildings::BuildingSet& set);
 
 }  // namespace skyquilt::evaluate::page

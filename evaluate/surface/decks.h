@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "core/base/thread_pool.h"
 #include "core/raytrace/traced_scene.h"
+#include "evaluate/measured.h"
 #include "evaluate/photos/flat_roofs.h"
 #include "evaluate/surface/joined_mesh.h"
 #include "evaluate/surface/samples.h"
@@ -21,7 +21,7 @@ inline constexpr double kDeckLayers_m = 1.0;  // farther above or below, only th
 
 struct DeckScore {
   int64_t samples = 0;
-  double share_within = std::numeric_limits<double>::quiet_NaN();  // of the samples, those near the height of the deck
+  double share_within = kNotMeasured;  // of the samples, those near the height of the deck
 };
 
 // roofs: of ReadFlatRoofs, in the simulator's frame. traced_mesh, traced_truth: the surfaces, relative to their middles. A point of the mesh counts

@@ -10,6 +10,7 @@
 #include "core/base/cancel.h"
 #include "core/base/order_statistics.h"
 #include "core/base/progress.h"
+#include "evaluate/measured.h"
 #include "evaluate/photos/pixel_groups.h"
 #include "evaluate/surface/nearest.h"
 #include "evaluate/surface/photo_errors.h"
@@ -85,7 +86,7 @@ std::vector<float> DistancesOf(std::span<const SampleDistance> all, const std::f
 }
 
 double ShareWithin(const std::vector<float>& distances, double tau_m) {
-  if (distances.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (distances.empty()) return kNotMeasured;
   const auto n = std::count_if(distances.begin(), distances.end(), [&](float distance) { return static_cast<double>(distance) < tau_m; });
   return static_cast<double>(n) / static_cast<double>(distances.size());
 }

@@ -9,6 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/survey/geo_fit_json.h"
+#include "evaluate/json_members.h"
 
 namespace skyquilt::evaluate::surface {
 namespace {
@@ -41,28 +42,6 @@ constexpr std::array<std::pair<const char*, std::string SurfaceFile::*>, 6> kFil
                                                                                            {"vertical", &SurfaceFile::vertical},
                                                                                            {"detail", &SurfaceFile::detail}}};
 
-// Null where a key is missing, and for what is not an object.
-OrderedJson MemberOf(const OrderedJson& json, const char* key) {
-  if (!json.is_object()) return nullptr;
-  const auto found = json.find(key);
-  return found == json.end() ? OrderedJson(nullptr) : *found;
-}
-
-void TakeNumber(const OrderedJson& json, const char* key, double* value) {
-  const OrderedJson member = MemberOf(json, key);
-  if (member.is_number()) *value = member.get<double>();
-}
-
-void TakeCount(const OrderedJson& json, const char* key, int64_t* value) {
-  const OrderedJson member = MemberOf(json, key);
-  if (member.is_number_integer()) *value = member.get<int64_t>();
-}
-
-void TakeText(const OrderedJson& json, const char* key, std::string* value) {
-  const OrderedJson member = MemberOf(json, key);
-  if (member.is_string()) *value = member.get<std::string>();
-}
-
 void PutAgreement(const SurfaceAgreement& agreement, OrderedJson* json) {
   (*json)["mesh_samples"] = agreement.mesh_samples;
   (*json)["true_samples"] = agreement.true_samples;
@@ -80,18 +59,18 @@ void PutAgreement(const SurfaceAgreement& agreement, OrderedJson* json) {
 
 SurfaceAgreement TakeAgreement(const OrderedJson& json) {
   SurfaceAgreement agreement;
-  TakeCount(json, "mesh_samples", &agreement.mesh_samples);
-  TakeCount(json, "true_samples", &agreement.true_samples);
-  TakeNumber(json, "accuracy_median_m", &agreement.accuracy_median_m);
-  TakeNumber(json, "completeness_median_m", &agreement.completeness_median_m);
-  const OrderedJson list = MemberOf(json, "f_scores");
+  TakeValue(json, "mesh_samples", &agreement.mesh_samples);
+  TakeValue(json, "true_samples", &agreement.true_samples);
+  TakeValue(json, "accuracy_median_m", &agreement.accuracy_median_m);
+  TakeValue(json, "completeness_median_m", &agreement.completeness_median_m);
+  const OrderedJson& list = MemberAt(json, "f_scores");
   for (size_t i = 0; list.is_array() && i < list.size(); ++i) {
     SurfaceFScore score;
-    TakeText(list[i], "tau", &score.tau);
-    TakeNumber(list[i], "tau_m", &score.tau_m);
-    TakeNumber(list[i], "precision", &score.precision);
-    TakeNumber(list[i], "recall", &score.recall);
-    TakeNumber(list[i], "f", &score.f);
+    TakeValue(list[i], "tau", &score.tau);
+    TakeValue(list[i], "tau_m", &score.tau_m);
+    TakeValue(list[i], "precision", &score.precision);
+    TakeValue(list[i], "recall", &score.recall);
+    TakeValue(list[i], "f", &score.f);
     agreement.f_scores.push_back(std::move(score));
   }
   return agreement;
@@ -111,13 +90,13 @@ void PutRecord(const SurfaceRecord& record, OrderedJson* json) {
 
 SurfaceRecord TakeRecord(const OrderedJson& json) {
   SurfaceRecord record;
-  for (const auto& [key, member] : kRecordCounts) TakeCount(json, key, &(record.*member));
-  for (const auto& [key, member] : kRecordNumbers) TakeNumber(json, key, &(record.*member));
-  const OrderedJson list = MemberOf(json, "files");
+  for (const auto& [key, member] : kRecordCounts) TakeValue(json, key, &(record.*member));
+  for (const auto& [key, member] : kRecordNumbers) TakeValue(json, key, &(record.*member));
+  const OrderedJson& list = MemberAt(json, "files");
   for (size_t i = 0; list.is_array() && i < list.size(); ++i) {
     SurfaceFile file;
-    for (const auto& [key, member] : kFileTexts) TakeText(list[i], key, &(file.*member));
-    TakeCount(list[i], "bytes", &file.bytes);
+    for (const auto& [key, member] : kFileTexts) TakeValue(list[i], key, &(file.*member));
+    TakeValue(list[i], "bytes", &file.bytes);
     if (!file.file.empty()) record.files.push_back(std::move(file));
   }
   return record;
@@ -145,19 +124,19 @@ OrderedJson ToJson(const SurfaceScores& scores) {
 
 SurfaceScores SurfaceScoresFromJson(const OrderedJson& json) {
   SurfaceScores scores;
-  for (const auto& [key, member] : kSurfaceNumbers) TakeNumber(json, key, &(scores.*member));
-  TakeCount(json, "pixels", &scores.pixels);
-  TakeCount(json, "deck_samples", &scores.deck_samples);
+  for (const auto& [key, member] : kSurfaceNumbers) TakeValue(json, key, &(scores.*member));
+  TakeValue(json, "pixels", &scores.pixels);
+  TakeValue(json, "deck_samples", &scores.deck_samples);
   scores.agreement = TakeAgreement(json);
-  const OrderedJson classes = MemberOf(json, "classes");
+  const OrderedJson& classes = MemberAt(json, "classes");
   if (classes.is_object()) {
     for (const auto& [name, one] : classes.items()) {
       SurfaceClassScore score;
       score.name = name;
-      TakeCount(one, "pixels", &score.pixels);
-      TakeCount(one, "missing_pixels", &score.missing_pixels);
-      TakeNumber(one, "psnr", &score.psnr_db);
-      TakeNumber(one, "psnr_field", &score.psnr_field_db);
+      TakeValue(one, "pixels", &score.pixels);
+      TakeValue(one, "missing_pixels", &score.missing_pixels);
+      TakeValue(one, "psnr", &score.psnr_db);
+      TakeValue(one, "psnr_field", &score.psnr_field_db);
       score.agreement = TakeAgreement(one);
       scores.classes.push_back(std::move(score));
     }

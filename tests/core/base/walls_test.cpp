@@ -76,7 +76,8 @@ const std::map<std::string, std::set<std::string>>& AllowedInEvaluate() {
 
 // What files of these folders may include from the top of evaluate.
 const std::set<std::string>& SharedInEvaluate() {
-  static const std::set<std::string> shared = {"evaluate/evaluate_input.h", "evaluate/evaluate_options.h", "evaluate/measured.h"};
+  static const std::set<std::string> shared = {"evaluate/evaluate_input.h", "evaluate/evaluate_options.h", "evaluate/json_members.h",
+                                               "evaluate/measured.h"};
   return shared;
 }
 

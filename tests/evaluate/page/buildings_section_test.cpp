@@ -39,7 +39,7 @@ struct BuildingsPage {
   BuildingsPage& operator=(const BuildingsPage&) = delete;
 };
 
-buildings::ComparedBuildings Untrue(skyquilt::buildings::BuildingSet set) {
+buildings::ComparedBuildings Untrue(buildings::BuildingSet set) {
   buildings::ComparedBuildings compared;
   compared.set = std::move(set);
   return compared;
@@ -79,7 +79,7 @@ TEST(ShownMeasure, HasTwoDigitsOfUncertaintyAndAValueToMatch) {
 
 TEST(BuildingsSection, HasMapTableCardsAndPlans) {
   BuildingsPage page(Untrue(buildings::MadeTown(3)));
-  skyquilt::buildings::Building& first = page.report.compared.set.buildings[0];
+  buildings::Building& first = page.report.compared.set.buildings[0];
   first.measures.height_m.sigma = 0.1234;
   first.note = "only <seen> from above & far away";
   first.given_id = "<b>12\"";
@@ -119,7 +119,7 @@ TEST(BuildingsSection, HasMapTableCardsAndPlans) {
 }
 
 TEST(BuildingsSection, MarksWhatWasMissedAndInvented) {
-  skyquilt::buildings::BuildingSet set = buildings::MadeTown(5);
+  buildings::BuildingSet set = buildings::MadeTown(5);
   buildings::TrueBuildings truth = buildings::TruthOf(set);
   truth.outlines[4].inside = false;
   truth.outlines[0].kind = "<house>";
@@ -159,7 +159,7 @@ TEST(BuildingsSection, OnlyTheLargestHaveCards) {
 }
 
 TEST(BuildingsSection, WithoutAScaleThereIsNoUnit) {
-  skyquilt::buildings::BuildingSet set = buildings::MadeTown(3);
+  buildings::BuildingSet set = buildings::MadeTown(3);
   set.metric = false;
   set.scale_source = "unknown";
   set.buildings[0].measures.length_m.sigma = 0.25;
@@ -202,9 +202,9 @@ TEST(BuildingsSection, IsAbsentWhenNoBuildingsWereSearched) {
 }
 
 TEST(BuildingPlan, ShowsTheWallsOfCompoundShapesAndRidges) {
-  skyquilt::buildings::BuildingSet set;
+  buildings::BuildingSet set;
   skyquilt::buildings::HousePlan flat;
-  flat.roof = skyquilt::buildings::RoofKind::kFlat;
+  flat.roof = buildings::RoofKind::kFlat;
   const std::string l_shape = BuildingPlan(skyquilt::buildings::MadeLHouse(flat), set);
   EXPECT_EQ(OccurrencesIn(l_shape, "<text"), 6U) << "each wall of an L";
   EXPECT_EQ(l_shape.find("class=\"ridge\""), std::string::npos);
@@ -216,7 +216,7 @@ TEST(BuildingPlan, ShowsTheWallsOfCompoundShapesAndRidges) {
   EXPECT_EQ(OccurrencesIn(court.substr(walls, court.find("/>", walls) - walls), "Z"), 2U) << "the yard is a hole";
   set.scale = 2.0;
   EXPECT_NE(BuildingPlan(skyquilt::buildings::MadeHouse({}), set).find("24.00"), std::string::npos) << "a scale bar stretches lengths";
-  EXPECT_EQ(BuildingPlan(skyquilt::buildings::Building{}, set), "");
+  EXPECT_EQ(BuildingPlan(buildings::Building{}, set), "");
 }
 
 }  // namespace

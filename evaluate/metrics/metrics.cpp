@@ -11,9 +11,8 @@ const char* const kCoverageDefinition =
     "point from these photos is not tested.";
 const char* const kPsnrDefinition =
     "PSNR, SSIM and FLIP: computed per held-out photo over its covered pixels in sRGB display values, then averaged over the photos. Full frame: the "
-    "same "
-    "over every pixel that no mask excludes. PSNR of a block: from the squared errors of all covered pixels of all held-out photos whose surface "
-    "point lies in the block's core box, seen from above.";
+    "same over every pixel that no mask excludes. PSNR of a block: from the squared errors of all covered pixels of all held-out photos whose "
+    "surface point lies in the block's core box, seen from above.";
 const char* const kSeamDefinition =
     "Seam gap: PSNR of covered pixels whose surface point lies inside a block, farther from its border than the margin, minus PSNR of those where "
     "two or more blocks with their margins overlap. Strong texture is harder to render, and there may be more of it in one of the two. So the pixels "

@@ -58,14 +58,6 @@ std::string ValueOf(const std::string& html, const std::string& name) {
   return html.substr(at + before.size(), html.find("</td>", at + before.size()) - at - before.size());
 }
 
-void ExpectBalanced(const std::string& html) {
-  for (const char* tag : {"section", "table", "tbody", "tr", "td", "svg", "figure", "figcaption", "details", "div", "span", "g", "p", "ul"}) {
-    const std::string name(tag);
-    EXPECT_EQ(CountOf(html, "<" + name + " ") + CountOf(html, "<" + name + ">"), CountOf(html, "</" + name + ">")) << name;
-  }
-  EXPECT_EQ(CountOf(html, "nan") + CountOf(html, "inf\"") + CountOf(html, ">inf"), 0U);
-}
-
 TEST(TwoDigits, KeepsTwoDigitsWhateverTheSize) {
   EXPECT_EQ(TwoDigits(123.4, "m"), "123\xE2\x80\xAFm");
   EXPECT_EQ(TwoDigits(9.96, "m"), "10\xE2\x80\xAFm");

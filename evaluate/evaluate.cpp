@@ -11,16 +11,16 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
-#include "evaluate/buildings_report.h"
-#include "evaluate/choose_photos.h"
-#include "evaluate/control_pictures.h"
-#include "evaluate/held_out_scorer.h"
-#include "evaluate/kept_points.h"
-#include "evaluate/report_writer.h"
+#include "evaluate/buildings/buildings_report.h"
+#include "evaluate/control/control_pictures.h"
+#include "evaluate/metrics/summary.h"
+#include "evaluate/page/report_writer.h"
+#include "evaluate/photos/choose_photos.h"
+#include "evaluate/photos/held_out_scorer.h"
+#include "evaluate/photos/kept_points.h"
+#include "evaluate/photos/scored_pixels.h"
 #include "evaluate/score_saver.h"
-#include "evaluate/scored_pixels.h"
-#include "evaluate/summary.h"
-#include "evaluate/surface_scorer.h"
+#include "evaluate/surface/surface_scorer.h"
 #include "surface/make_surface.h"
 
 namespace skyquilt::evaluate {
@@ -37,51 +37,51 @@ void CheckInput(const EvaluateInput& input) {
 }
 
 // Where to look for flat roofs; none without a truth that says so.
-std::vector<RoofArea> FlatRoofsOf(const survey::Survey& survey) {
+std::vector<photos::RoofArea> FlatRoofsOf(const survey::Survey& survey) {
   if (!survey.truth || !survey.georeferenced || !std::filesystem::is_regular_file(survey.truth->buildings_json)) return {};
-  return ReadFlatRoofs(survey.truth->buildings_json);
+  return photos::ReadFlatRoofs(survey.truth->buildings_json);
 }
 
 // Nothing when no surface was made, or it is not finished.
-std::unique_ptr<SurfaceScorer> SurfaceOf(const EvaluateInput& input) {
+std::unique_ptr<surface::SurfaceScorer> SurfaceOf(const EvaluateInput& input) {
   if (!std::filesystem::is_regular_file(input.project_folder / "surface" / "surface.json")) return nullptr;
   try {
-    std::vector<surface::TexturedTile> tiles = surface::LoadFinestTiles(input.project_folder / "cache" / "surface");
-    return tiles.empty() ? nullptr : std::make_unique<SurfaceScorer>(std::move(tiles));
+    std::vector<skyquilt::surface::TexturedTile> tiles = skyquilt::surface::LoadFinestTiles(input.project_folder / "cache" / "surface");
+    return tiles.empty() ? nullptr : std::make_unique<surface::SurfaceScorer>(std::move(tiles));
   } catch (const base::InputError& error) {
     throw base::InputError(error.file(), "is damaged, or cannot be read", "Run 'skyquilt surface' again with --restart");
   }
 }
 
-Scores NoScores(const EvaluateInput& input, const HeldOutScorer& scorer) {
-  Scores scores(scorer.n_boxes());
-  scores.flat_roofs = FlatRoofPoints(FlatRoofsOf(*input.survey));
+metrics::Scores NoScores(const EvaluateInput& input, const photos::HeldOutScorer& scorer) {
+  metrics::Scores scores(scorer.n_boxes());
+  scores.flat_roofs = photos::FlatRoofPoints(FlatRoofsOf(*input.survey));
   return scores;
 }
 
 // What takes part in the scoring of the photos.
 struct PhotoLoop {
   const EvaluateInput& input;
-  HeldOutScorer& scorer;
-  SurfaceScorer* made;  // null without a surface
-  ReportPictures& pictures;
+  photos::HeldOutScorer& scorer;
+  surface::SurfaceScorer* made;  // null without a surface
+  page::ReportPictures& pictures;
   ScoreSaver& saver;
-  Scores& scores;
+  metrics::Scores& scores;
 };
 
 void ScoreAndAdd(const PhotoLoop& loop, int photo, base::ThreadPool& threads) {
-  ScoredPhoto scored = loop.scorer.Score(photo, loop.pictures.ShowsNormal(photo), threads);
+  photos::ScoredPhoto scored = loop.scorer.Score(photo, loop.pictures.ShowsNormal(photo), threads);
   if (loop.made != nullptr) scored.mesh = loop.made->Score(scored, threads);
   loop.pictures.Write(scored);
   const std::filesystem::path& pixels_folder = loop.input.options.scored_pixels_folder;
-  if (!pixels_folder.empty()) WriteScoredPixels(scored, pixels_folder);
+  if (!pixels_folder.empty()) photos::WriteScoredPixels(scored, pixels_folder);
   loop.scores.Add(scored);
 }
 
 // Goes on after the photos that an earlier evaluation has scored.
 void ScorePhotos(const PhotoLoop& loop, const std::vector<int>& held_out, base::ThreadPool& threads) {
   loop.saver.Resume();
-  const std::vector<PhotoScore>& photos = loop.scores.photos;
+  const std::vector<photos::PhotoScore>& photos = loop.scores.photos;
   base::Progress progress("evaluate", static_cast<double>(held_out.size()), "photos", static_cast<double>(photos.size()));
   try {
     while (photos.size() < held_out.size()) {
@@ -90,7 +90,7 @@ void ScorePhotos(const PhotoLoop& loop, const std::vector<int>& held_out, base::
       loop.saver.SaveWhenDue();
       progress.Advance(1.0, fmt::format("{} {:.2f} dB", photos.back().name, photos.back().psnr_db));
     }
-    loop.scores.exposure_seams = MeasureExposureSeams(*loop.input.scene, loop.scorer.training(), threads);
+    loop.scores.exposure_seams = photos::MeasureExposureSeams(*loop.input.scene, loop.scorer.training(), threads);
   } catch (const base::Interrupted&) {
     // Thrown while a photo is rendered, before anything of it is added.
     loop.saver.Save();
@@ -101,30 +101,30 @@ void ScorePhotos(const PhotoLoop& loop, const std::vector<int>& held_out, base::
 
 }  // namespace
 
-Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
+metrics::Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
   CheckInput(input);
   const Clock::time_point start = Clock::now();
   base::RequireWritableFolder(input.ReportFolder() / "images");
-  Metrics metrics = MetricsBeforeScoring(input);
+  metrics::Metrics metrics = metrics::MetricsBeforeScoring(input);
 
-  const std::vector<int> held_out = SelectEvenly(HeldOutPhotos(*input.survey), input.options.max_photos);
-  HeldOutScorer scorer(input);
-  ReportPictures pictures(input, held_out);
-  const std::unique_ptr<SurfaceScorer> made = SurfaceOf(input);
-  std::optional<BuildingsReport> found = CollectBuildings(input);
-  Scores scores = NoScores(input, scorer);
+  const std::vector<int> held_out = photos::SelectEvenly(photos::HeldOutPhotos(*input.survey), input.options.max_photos);
+  photos::HeldOutScorer scorer(input);
+  page::ReportPictures pictures(input, held_out);
+  const std::unique_ptr<surface::SurfaceScorer> made = SurfaceOf(input);
+  std::optional<buildings::BuildingsReport> found = buildings::CollectBuildings(input);
+  metrics::Scores scores = NoScores(input, scorer);
   ScoreSaver saver(input, held_out, {.scores = &scores, .surface = made ? &made->photos() : nullptr, .pictures = &pictures.written()});
   ScorePhotos({input, scorer, made.get(), pictures, saver, scores}, held_out, threads);
   if (made) metrics.surface = made->Result(input, scorer, threads);
-  if (found) metrics.buildings = ScoreBuildings(found->compared, threads);
-  metrics.kept_points = MeasureKeptPoints(*input.scene, *input.survey, *input.pixels, scorer.area().boxes, threads);
+  if (found) metrics.buildings = buildings::ScoreBuildings(found->compared, threads);
+  metrics.kept_points = photos::MeasureKeptPoints(*input.scene, *input.survey, *input.pixels, scorer.area().boxes, threads);
   metrics.evaluate_seconds = saver.earlier_s() + std::chrono::duration<double>(Clock::now() - start).count();
 
-  Summarise(input, scores, &metrics);
-  for (const Warning& warning : metrics.warnings) base::LogWarning("{}. {}", warning.finding, warning.advice);
-  std::vector<MarkPicture> marks;
-  if (input.options.report_photos > 0) marks = WriteMarkPictures(*input.survey, input.scene, input.ReportFolder(), threads);
-  WriteReport(input, metrics, pictures, std::move(marks), found ? &*found : nullptr);
+  metrics::Summarise(input, scores, &metrics);
+  for (const metrics::Warning& warning : metrics.warnings) base::LogWarning("{}. {}", warning.finding, warning.advice);
+  std::vector<control::MarkPicture> marks;
+  if (input.options.report_photos > 0) marks = control::WriteMarkPictures(*input.survey, input.scene, input.ReportFolder(), threads);
+  page::WriteReport(input, metrics, pictures, std::move(marks), found ? &*found : nullptr);
   saver.Remove();
   return metrics;
 }

@@ -9,7 +9,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/system.h"
-#include "evaluate/scored_pixels.h"
+#include "evaluate/photos/scored_pixels.h"
 
 namespace skyquilt::evaluate {
 
@@ -25,10 +25,10 @@ std::string KeyOf(const EvaluateInput& input, const std::vector<int>& held_out) 
   return key;
 }
 
-bool ScoredPixelsExist(const Scores& scores, const std::filesystem::path& folder) {
+bool ScoredPixelsExist(const metrics::Scores& scores, const std::filesystem::path& folder) {
   std::error_code ignored;
-  return folder.empty() || std::all_of(scores.photos.begin(), scores.photos.end(), [&](const PhotoScore& photo) {
-           return std::filesystem::is_regular_file(ScoredPixelsFile(folder, photo.name), ignored);
+  return folder.empty() || std::all_of(scores.photos.begin(), scores.photos.end(), [&](const photos::PhotoScore& photo) {
+           return std::filesystem::is_regular_file(photos::ScoredPixelsFile(folder, photo.name), ignored);
          });
 }
 
@@ -57,9 +57,9 @@ double ScoreSaver::Now() const {
 }
 
 void ScoreSaver::Load(base::ByteUnpacker* in) {
-  Scores scores = *state_.scores;
-  WrittenPictures pictures = *state_.pictures;
-  SurfacePhotoErrors surface;
+  metrics::Scores scores = *state_.scores;
+  page::WrittenPictures pictures = *state_.pictures;
+  surface::SurfacePhotoErrors surface;
   const auto seconds = in->Take<double>();
   scores.Load(in);
   pictures.Load(in);

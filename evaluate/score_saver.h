@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "evaluate/evaluate_input.h"
+#include "evaluate/metrics/summary.h"
+#include "evaluate/page/written_pictures.h"
 #include "evaluate/progress_file.h"
-#include "evaluate/summary.h"
-#include "evaluate/surface_photo_scores.h"
-#include "evaluate/written_pictures.h"
+#include "evaluate/surface/photo_errors.h"
 
 namespace skyquilt::evaluate {
 
@@ -29,9 +29,9 @@ class SaveSchedule {
 
 // What grows with every photo. All have the same number of photos whenever it is saved.
 struct ScoreState {
-  Scores* scores = nullptr;
-  SurfacePhotoErrors* surface = nullptr;  // null: no surface is scored
-  WrittenPictures* pictures = nullptr;
+  metrics::Scores* scores = nullptr;
+  surface::SurfacePhotoErrors* surface = nullptr;  // null: no surface is scored
+  page::WrittenPictures* pictures = nullptr;
 };
 
 class ScoreSaver {

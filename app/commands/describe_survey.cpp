@@ -4,7 +4,7 @@
 #include "app/commands/describe.h"
 #include "app/commands/describe_number.h"
 #include "core/survey/survey.h"
-#include "evaluate/control_summary.h"
+#include "evaluate/control/control_summary.h"
 
 namespace skyquilt::app {
 namespace {
@@ -25,7 +25,7 @@ Json Gravity(const survey::GeoFit& fit) {
 }
 
 // Errors of one group of points.
-Json Errors(const evaluate::ControlErrors& errors) {
+Json Errors(const evaluate::control::ControlErrors& errors) {
   const auto metres = [](double value) { return Round(value, 4); };
   return {{"points", errors.n},
           {"mean_m", {metres(errors.mean_m.x()), metres(errors.mean_m.y()), metres(errors.mean_m.z())}},
@@ -36,7 +36,7 @@ Json Errors(const evaluate::ControlErrors& errors) {
 }
 
 Json Control(const survey::ControlFit& fit) {
-  const evaluate::ControlSummary summary = evaluate::SummariseControl(fit);
+  const evaluate::control::ControlSummary summary = evaluate::control::SummariseControl(fit);
   Json json = {{"file", fit.file}, {"crs", fit.crs}, {"heights", fit.heights}, {"placed", fit.placed}, {"adjusted", fit.adjusted}};
   if (summary.check.n > 0) json["check"] = Errors(summary.check);
   if (summary.left_out.n > 0) json["left_out"] = Errors(summary.left_out);
@@ -47,7 +47,7 @@ Json Control(const survey::ControlFit& fit) {
     if (point.use == survey::ControlUse::kRejected) json["rejected"].push_back(point.label);
     if (point.use == survey::ControlUse::kUnseen) json["unseen"].push_back(point.label);
   }
-  json["accuracy"] = evaluate::AccuracyStatement(summary);
+  json["accuracy"] = evaluate::control::AccuracyStatement(summary);
   return json;
 }
 

@@ -2,18 +2,18 @@
 
 #include "bench/study/buildings_parts.h"
 #include "core/page/html.h"
-#include "evaluate/buildings_scorer.h"
-#include "evaluate/map_frame.h"
+#include "evaluate/buildings/buildings_scorer.h"
+#include "evaluate/page/drawn_map.h"
 
 namespace skyquilt::bench {
 namespace {
 
-using evaluate::FoundFate;
-using evaluate::TrueFate;
+using evaluate::buildings::FoundFate;
+using evaluate::buildings::TrueFate;
 
 constexpr const char* kFoundColor = "#fab64b";
 
-std::string PathOf(const buildings::Polygon& polygon, const evaluate::MapFrame& frame) {
+std::string PathOf(const buildings::Polygon& polygon, const evaluate::page::DrawnMap& frame) {
   std::string path;
   const auto add = [&](const std::vector<Eigen::Vector2d>& ring) {
     for (size_t i = 0; i < ring.size(); ++i) path += fmt::format("{}{:.1f} {:.1f}", i == 0 ? "M" : "L", frame.X(ring[i].x()), frame.Y(ring[i].y()));
@@ -27,17 +27,17 @@ std::string PathOf(const buildings::Polygon& polygon, const evaluate::MapFrame& 
 }  // namespace
 
 std::string BuildingsPlan(const std::string& title, const std::filesystem::path& project_folder, const survey::Survey& survey) {
-  const std::optional<evaluate::ComparedBuildings> compared = evaluate::LoadBuildingsOf(project_folder, survey);
+  const std::optional<evaluate::buildings::ComparedBuildings> compared = evaluate::buildings::LoadBuildingsOf(project_folder, survey);
   if (!compared || !compared->truth) return "";
-  const std::vector<evaluate::TrueBuilding>& outlines = compared->truth->outlines;
-  evaluate::MapBounds bounds;
+  const std::vector<evaluate::buildings::TrueBuilding>& outlines = compared->truth->outlines;
+  evaluate::page::MapBounds bounds;
   for (const buildings::Building& building : compared->set.buildings) {
     for (const Eigen::Vector2d& corner : building.footprint.outer) bounds.Include(corner);
   }
-  for (const evaluate::TrueBuilding& outline : outlines) {
+  for (const evaluate::buildings::TrueBuilding& outline : outlines) {
     for (const Eigen::Vector2d& corner : outline.walls.outer) bounds.Include(corner);
   }
-  const evaluate::MapFrame frame(bounds);
+  const evaluate::page::DrawnMap frame(bounds);
   std::string svg;
   for (size_t f = 0; f < compared->set.buildings.size(); ++f) {
     const buildings::Building& building = compared->set.buildings[f];
@@ -56,7 +56,7 @@ std::string BuildingsPlan(const std::string& title, const std::filesystem::path&
   }
   return fmt::format("<figure class=\"card map-card\"><svg class=\"map building-map\" viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"{}\">",
                      frame.width_px(), frame.height_px(), page::EscapeHtml("Plan of the buildings: " + title)) +
-         svg + evaluate::ScaleBarAndNorth(frame, survey.georeferenced) +
+         svg + evaluate::page::ScaleBarAndNorth(frame, survey.georeferenced) +
          fmt::format(
              "</svg><figcaption>{}<div class=\"legend\"><span><i class=\"k-missed\"></i>missed</span><span><i "
              "class=\"k-invented\"></i>invented</span><span><i class=\"k-uncounted\"></i>does not count</span></div></figcaption></figure>\n",

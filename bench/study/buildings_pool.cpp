@@ -7,12 +7,12 @@
 
 #include "core/base/order_statistics.h"
 #include "core/base/random.h"
-#include "evaluate/buildings_errors.h"
+#include "evaluate/buildings/measure_errors.h"
 
 namespace skyquilt::bench {
 namespace {
 
-using evaluate::BuildingOutcome;
+using evaluate::buildings::BuildingOutcome;
 using Fate = BuildingOutcome::Fate;
 
 constexpr std::array<const char*, 9> kPooledMeasures = {"deck", "eave", "ridge", "ground", "height", "length", "width", "yaw", "footprint"};
@@ -112,23 +112,23 @@ bool IsLength(const std::string& measure) {
   return UnitOfMeasure(measure) == "m";
 }
 
-evaluate::BuildingErrors PooledErrors(const BuildingPool& pool, const std::string& measure, bool in_gsd) {
-  std::vector<evaluate::MeasureError> errors;
+evaluate::buildings::BuildingErrors PooledErrors(const BuildingPool& pool, const std::string& measure, bool in_gsd) {
+  std::vector<evaluate::buildings::MeasureError> errors;
   for (const PooledBuilding& one : pool) {
     const BuildingOutcome::Error* error = Find(*one.outcome, measure);
     if (error == nullptr) continue;
     const double unit = in_gsd ? one.gsd_m : 1.0;
     errors.push_back({error->error / unit, error->sigma / unit});
   }
-  return evaluate::SummariseErrors(measure.c_str(), errors);
+  return evaluate::buildings::SummariseErrors(measure.c_str(), errors);
 }
 
 double WithinSigma(const BuildingPool& pool) {
-  std::vector<evaluate::MeasureError> errors;
+  std::vector<evaluate::buildings::MeasureError> errors;
   for (const PooledBuilding& one : pool) {
     for (const BuildingOutcome::Error& error : one.outcome->errors) errors.push_back({error.error, error.sigma});
   }
-  return evaluate::SummariseErrors("", errors).within_sigma;
+  return evaluate::buildings::SummariseErrors("", errors).within_sigma;
 }
 
 BuildingPool WithMeasure(const BuildingPool& pool, const std::string& measure) {

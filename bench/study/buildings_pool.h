@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "bench/study/study.h"
-#include "evaluate/buildings_scores.h"
+#include "evaluate/buildings/building_scores.h"
 
 namespace skyquilt::bench {
 
 // A building of one town.
 struct PooledBuilding {
-  const evaluate::BuildingOutcome* outcome = nullptr;
+  const evaluate::buildings::BuildingOutcome* outcome = nullptr;
   double gsd_m = std::numeric_limits<double>::quiet_NaN();  // ground sampling distance of its town
 };
 using BuildingPool = std::vector<PooledBuilding>;
@@ -56,8 +56,8 @@ std::span<const char* const> PooledMeasures();
 // "m", "m2" or degrees; lengths have an RMSE in ground sampling distances too.
 std::string UnitOfMeasure(const std::string& measure);
 bool IsLength(const std::string& measure);
-// Errors of a measure; see evaluate::SummariseErrors. in_gsd: divided by the ground sampling distance of the building's town.
-evaluate::BuildingErrors PooledErrors(const BuildingPool& pool, const std::string& measure, bool in_gsd = false);
+// Errors of a measure; see evaluate::buildings::SummariseErrors. in_gsd: divided by the ground sampling distance of the building's town.
+evaluate::buildings::BuildingErrors PooledErrors(const BuildingPool& pool, const std::string& measure, bool in_gsd = false);
 // Share of all errors of all measures that are within 1.96 sigma.
 double WithinSigma(const BuildingPool& pool);
 // Matched buildings that have the measure.

@@ -11,7 +11,7 @@
 #include "core/base/errors.h"
 #include "core/config/options.h"
 #include "core/scene/scene.h"
-#include "evaluate/buildings_scorer.h"
+#include "evaluate/buildings/buildings_scorer.h"
 #include "partition/block.h"
 #include "products/map_area.h"
 #include "products/map_rays.h"
@@ -74,8 +74,8 @@ void FindAndScore(OpenProject& open, const buildings::PointCloud* cloud, const b
   std::filesystem::create_directories(open.project.BuildingsFolder());
   buildings::SaveBuildings(set, surface::MapFrame(open.info), open.project.BuildingsFile());
   // Read back, so that the scores are those of what is kept.
-  if (const auto compared = evaluate::LoadBuildingsOf(open.project.folder, open.survey)) {
-    result->buildings = evaluate::ScoreBuildings(*compared, open.threads);
+  if (const auto compared = evaluate::buildings::LoadBuildingsOf(open.project.folder, open.survey)) {
+    result->buildings = evaluate::buildings::ScoreBuildings(*compared, open.threads);
   }
   result->training_photos =
       static_cast<int>(std::count_if(open.survey.photos.begin(), open.survey.photos.end(), [](const auto& photo) { return !photo.is_test; }));
@@ -109,7 +109,7 @@ void MeasureFromTruth(coordinator::Pipeline& pipeline, VariantResult* result) {
   std::filesystem::create_directories(open.project.PixelCacheFile().parent_path());
   const image::PixelCache pixels =
       image::PixelCache::Open(open.project.PixelCacheFile(), coordinator::PixelSources(open.survey), open.settings.run.image_width, open.threads);
-  const TrueRays rays(evaluate::ReadTrueSurface(open.survey.truth->surface_ply, open.survey.origin), open.survey, &pixels);
+  const TrueRays rays(evaluate::surface::ReadTrueSurface(open.survey.truth->surface_ply, open.survey.origin), open.survey, &pixels);
   const surface::SurfaceResult made = surface::MakeSurface(SurfaceInputOf(open, rays), open.threads);
   if (made.triangles == 0) {
     FindAndScore(open, nullptr, nullptr, open.info.gsd_m, result);

@@ -12,7 +12,7 @@
 namespace skyquilt::bench {
 namespace {
 
-using evaluate::BuildingErrors;
+using evaluate::buildings::BuildingErrors;
 
 constexpr double kLargeFrom_m2 = 50.0;
 constexpr double kAny_m2 = std::numeric_limits<double>::infinity();

@@ -11,8 +11,8 @@
 
 #include "core/image/image.h"
 #include "core/metrics/psnr.h"
-#include "evaluate/metrics.h"
-#include "evaluate/scored_pixels.h"
+#include "evaluate/metrics/metrics.h"
+#include "evaluate/photos/scored_pixels.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -40,7 +40,7 @@ std::set<std::string> PhotosIn(const std::filesystem::path& folder, std::string*
 // Adds the squared errors of one photo over the pixels that all score.
 std::vector<metrics::SquaredError> CommonErrors(const std::vector<image::Image8>& pictures) {
   std::array<double, 256> squared_error{};
-  for (size_t value = 1; value < squared_error.size(); ++value) squared_error[value] = evaluate::SquaredErrorOf(static_cast<uint8_t>(value));
+  for (size_t value = 1; value < squared_error.size(); ++value) squared_error[value] = evaluate::photos::SquaredErrorOf(static_cast<uint8_t>(value));
   std::vector<metrics::SquaredError> errors(pictures.size());
   for (size_t i = 0; i < pictures.front().data.size(); ++i) {
     if (std::any_of(pictures.begin(), pictures.end(), [i](const image::Image8& picture) { return picture.data[i] == 0; })) continue;

@@ -6,7 +6,7 @@
 #include "bench/study/priors_parts.h"
 #include "bench/study/study_tables.h"
 #include "core/page/bar_chart.h"
-#include "evaluate/metrics.h"
+#include "evaluate/metrics/metrics.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -15,18 +15,20 @@ constexpr int kPercentDecimals = 1;
 constexpr const char* kPsnr = "PSNR";
 constexpr const char* kCommonPsnr = "PSNR, common";
 
-double OfClass(const VariantResult& result, const char* name, double evaluate::ClassScore::*figure) {
-  const auto at = std::find_if(result.classes.begin(), result.classes.end(), [name](const evaluate::ClassScore& c) { return c.name == name; });
+double OfClass(const VariantResult& result, const char* name, double evaluate::metrics::ClassScore::*figure) {
+  const auto at =
+      std::find_if(result.classes.begin(), result.classes.end(), [name](const evaluate::metrics::ClassScore& c) { return c.name == name; });
   return at == result.classes.end() ? VariantResult::kNone : (*at).*figure;
 }
 
 PriorFigure DepthOf(const char* title, const char* name) {
-  return {title, "m", 3, ChangeKind::kPercent, [name](const VariantResult& r) { return OfClass(r, name, &evaluate::ClassScore::depth_nmad_m); }};
+  return {title, "m", 3, ChangeKind::kPercent,
+          [name](const VariantResult& r) { return OfClass(r, name, &evaluate::metrics::ClassScore::depth_nmad_m); }};
 }
 
 PriorFigure NormalsOf(const char* title, const char* name) {
   return {title, "\xC2\xB0", 1, ChangeKind::kDifference,
-          [name](const VariantResult& r) { return OfClass(r, name, &evaluate::ClassScore::normal_median_deg); }};
+          [name](const VariantResult& r) { return OfClass(r, name, &evaluate::metrics::ClassScore::normal_median_deg); }};
 }
 
 // Mean over the blocks.

@@ -15,10 +15,10 @@
 #include "core/image/area_mean.h"
 #include "core/image/srgb.h"
 #include "core/metrics/psnr.h"
-#include "evaluate/choose_photos.h"
-#include "evaluate/load_held_out_photo.h"
-#include "evaluate/metrics.h"
-#include "evaluate/photo_response.h"
+#include "evaluate/metrics/metrics.h"
+#include "evaluate/photos/choose_photos.h"
+#include "evaluate/photos/load_held_out_photo.h"
+#include "evaluate/photos/photo_response.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -53,19 +53,19 @@ image::ImageF FrameOf(const scene::Scene& scene, const camera::Camera& camera, c
   return frame;
 }
 
-evaluate::PhotoResponse RecordingOf(const ScaleInput& input, int photo) {
+evaluate::photos::PhotoResponse RecordingOf(const ScaleInput& input, int photo) {
   const brightness::Response& response = input.scene->info().response;
   const survey::Photo& taken = input.survey->photos[static_cast<size_t>(photo)];
-  const double gain = evaluate::TaggedGain(taken, response.reference_exposure, input.evaluate.exif_gain);
-  const evaluate::PhotoResponse recording = evaluate::TaggedResponse(response, taken.camera, gain);
-  return input.evaluate.predicted_gain ? evaluate::PredictedResponse(response, static_cast<size_t>(photo), recording) : recording;
+  const double gain = evaluate::photos::TaggedGain(taken, response.reference_exposure, input.evaluate.exif_gain);
+  const evaluate::photos::PhotoResponse recording = evaluate::photos::TaggedResponse(response, taken.camera, gain);
+  return input.evaluate.predicted_gain ? evaluate::photos::PredictedResponse(response, static_cast<size_t>(photo), recording) : recording;
 }
 
 // Held-out photos whose names begin with `prefix`.
 std::vector<int> PhotosOfGroup(const survey::Survey& survey, const std::string& prefix, int at_most) {
-  std::vector<int> photos = evaluate::HeldOutPhotos(survey);
+  std::vector<int> photos = evaluate::photos::HeldOutPhotos(survey);
   std::erase_if(photos, [&](int photo) { return !survey.photos[static_cast<size_t>(photo)].name.starts_with(prefix); });
-  return evaluate::SelectEvenly(photos, at_most);
+  return evaluate::photos::SelectEvenly(photos, at_most);
 }
 
 void WritePictures(const std::vector<ScaledPhoto>& scaled, const std::string& group, const std::filesystem::path& folder) {
@@ -83,7 +83,8 @@ std::vector<ScaleScore> ScoreGroup(const ScaleInput& input, const ScaleOptions& 
   std::vector<std::vector<double>> psnr_db, seconds;
   for (size_t i = 0; i < photos.size(); ++i) {
     base::ThrowIfCancelled();
-    const evaluate::HeldOutPhoto photo = evaluate::LoadHeldOutPhoto(*input.survey, *input.pixels, photos[i], input.evaluate.image_width);
+    const evaluate::photos::HeldOutPhoto photo =
+        evaluate::photos::LoadHeldOutPhoto(*input.survey, *input.pixels, photos[i], input.evaluate.image_width);
     TrueView view = SceneLight(photo, RecordingOf(input, photos[i]));
     if (options.area) KeepArea(photo, *options.area, &view);
     const FrameRenderer render = [&](const camera::Camera& camera) { return FrameOf(*input.scene, camera, photo.cam_from_enu, threads); };
@@ -126,7 +127,7 @@ std::string ScaleOptions::Identity() const {
   return text;
 }
 
-TrueView SceneLight(const evaluate::HeldOutPhoto& photo, const evaluate::PhotoResponse& recording) {
+TrueView SceneLight(const evaluate::photos::HeldOutPhoto& photo, const evaluate::photos::PhotoResponse& recording) {
   TrueView view{.camera = photo.camera, .light = LightOf(image::ToImageF(photo.photo)), .used = photo.UsedPixels()};
   brightness::Response one = brightness::Response::Neutral(1, 1);
   one.log_gain.assign(recording.log_gain.begin(), recording.log_gain.end());
@@ -141,7 +142,7 @@ TrueView SceneLight(const evaluate::HeldOutPhoto& photo, const evaluate::PhotoRe
   return view;
 }
 
-void KeepArea(const evaluate::HeldOutPhoto& photo, const GroundArea& area, TrueView* view) {
+void KeepArea(const evaluate::photos::HeldOutPhoto& photo, const GroundArea& area, TrueView* view) {
   if (view->used.Empty()) view->used = image::Image8(view->light.width, view->light.height, 1, 255);
   const geo::Rigid3d enu_from_cam = photo.cam_from_enu.Inverse();
   const image::ImageF& depth = photo.true_depth;

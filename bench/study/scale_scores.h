@@ -18,9 +18,9 @@
 #include "core/image/pixel_cache.h"
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
-#include "evaluate/apply_response.h"
 #include "evaluate/evaluate_options.h"
-#include "evaluate/photo_scorer.h"
+#include "evaluate/photos/apply_response.h"
+#include "evaluate/photos/photo_scorer.h"
 
 namespace skyquilt::bench {
 
@@ -59,9 +59,9 @@ struct TrueView {
   image::Image8 used;     // one channel, 0 = not scored; empty: every pixel counts
 };
 // used: as in TrueView. Divides out the recording, which ApplyResponse would apply to a rendering.
-TrueView SceneLight(const evaluate::HeldOutPhoto& photo, const evaluate::PhotoResponse& recording);
+TrueView SceneLight(const evaluate::photos::HeldOutPhoto& photo, const evaluate::photos::PhotoResponse& recording);
 // Unsets the pixels whose true surface point is outside the area, or unknown.
-void KeepArea(const evaluate::HeldOutPhoto& photo, const GroundArea& area, TrueView* view);
+void KeepArea(const evaluate::photos::HeldOutPhoto& photo, const GroundArea& area, TrueView* view);
 
 struct ScaledPhoto {
   int divisor = 1;

@@ -7,8 +7,8 @@
 #include "core/base/progress.h"
 #include "core/image/normal_image.h"
 #include "core/scene/depth_normals.h"
-#include "evaluate/choose_photos.h"
-#include "evaluate/held_out_scorer.h"
+#include "evaluate/photos/choose_photos.h"
+#include "evaluate/photos/held_out_scorer.h"
 
 namespace skyquilt::bench {
 
@@ -18,13 +18,13 @@ void WriteViews(const evaluate::EvaluateInput& input, int photos, const std::fil
   // These scores are in the report already and would take time.
   shown.options.lpips_network.clear();
   shown.options.normal_photos.clear();
-  evaluate::HeldOutScorer scorer(shown);
-  const std::vector<int> chosen = evaluate::SelectEvenly(evaluate::HeldOutPhotos(*input.survey), photos);
+  evaluate::photos::HeldOutScorer scorer(shown);
+  const std::vector<int> chosen = evaluate::photos::SelectEvenly(evaluate::photos::HeldOutPhotos(*input.survey), photos);
   base::Progress progress("views", static_cast<double>(chosen.size()), "photos");
   for (size_t i = 0; i < chosen.size(); ++i) {
     base::ThrowIfCancelled();
-    const evaluate::ScoredPhoto scored = scorer.Score(chosen[i], false, threads);
-    const evaluate::PhotoResult& findings = scored.findings;
+    const evaluate::photos::ScoredPhoto scored = scorer.Score(chosen[i], false, threads);
+    const evaluate::photos::PhotoResult& findings = scored.findings;
     const auto save = [&](const image::Image8& picture, const char* kind) {
       image::SavePng(picture, folder / ViewPicture(static_cast<int>(i), kind));
     };

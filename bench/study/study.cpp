@@ -17,7 +17,7 @@
 #include "core/render/trained_field.h"
 #include "core/scene/field_file.h"
 #include "core/scene/scene_file.h"
-#include "evaluate/training_curve.h"
+#include "evaluate/metrics/training_curve.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -44,7 +44,7 @@ std::vector<std::pair<double, double>> JoinedCurve(const scene::TrainReport& tra
   for (const scene::FieldTraining& field : training.fields) {
     if (field.block >= 0) blocks.push_back(field.name);
   }
-  evaluate::Curves curves = evaluate::ReadCurves(checkpoint_folder, blocks);
+  evaluate::metrics::Curves curves = evaluate::metrics::ReadCurves(checkpoint_folder, blocks);
   std::erase_if(curves, [](const auto& entry) { return entry.second.empty(); });
   if (curves.empty()) return joined;
   double seconds = 0.0;
@@ -57,7 +57,7 @@ std::vector<std::pair<double, double>> JoinedCurve(const scene::TrainReport& tra
     size_t counted = 0;
     for (const auto& [name, curve] : curves) {
       const double until = share * curve.back().step;
-      const auto at = std::find_if(curve.begin(), curve.end(), [until](const evaluate::CurvePoint& p) { return p.step >= until; });
+      const auto at = std::find_if(curve.begin(), curve.end(), [until](const evaluate::metrics::CurvePoint& p) { return p.step >= until; });
       if (at == curve.end() || !std::isfinite(at->psnr_db)) continue;
       sum += at->psnr_db;
       ++counted;
@@ -68,12 +68,12 @@ std::vector<std::pair<double, double>> JoinedCurve(const scene::TrainReport& tra
 }
 
 // How far the field's training PSNR fell, and how far below its best it is in the end.
-void AddFalls(const evaluate::Curves& curves, double final_psnr_db, VariantField* field) {
+void AddFalls(const evaluate::metrics::Curves& curves, double final_psnr_db, VariantField* field) {
   constexpr double kFirstStep = 300.0;  // before, surfaces are not found yet
   const auto curve = curves.find(field->name);
   if (curve == curves.end()) return;
   double best = -std::numeric_limits<double>::infinity();
-  for (const evaluate::CurvePoint& point : curve->second) {
+  for (const evaluate::metrics::CurvePoint& point : curve->second) {
     if (point.step < kFirstStep || !std::isfinite(point.psnr_db)) continue;
     best = std::max(best, point.psnr_db);
     field->worst_fall_db = std::max(std::isnan(field->worst_fall_db) ? 0.0 : field->worst_fall_db, best - point.psnr_db);
@@ -198,7 +198,7 @@ std::vector<VariantResult> Study::RunOnce(const Variant& variant, const std::vec
     coordinator::Pipeline pipeline{
         .comm = comm_, .project = project, .settings = own, .restart = true, .quiet = options_.quiet, .verbose = options_.verbose};
     coordinator::MergeStage(pipeline);
-    const evaluate::Metrics metrics = Evaluate(other, pipeline);
+    const evaluate::metrics::Metrics metrics = Evaluate(other, pipeline);
     MoveFolder(project.ReportFolder(), coordinator::Project{RunFolder(other)}.ReportFolder());
     results.push_back(Collect(variant, other, training, metrics));
     results.back().label = other.label;
@@ -215,7 +215,7 @@ VariantResult Study::Measure(const Variant& variant, const coordinator::Settings
   VariantResult result;
   result.name = variant.name;
   try {
-    const evaluate::Metrics metrics = Train(variant, settings, merge_anew, training);
+    const evaluate::metrics::Metrics metrics = Train(variant, settings, merge_anew, training);
     result = Collect(variant, variant, *training, metrics);
     AddFromScene(variant, settings, &result);
   } catch (const base::BlockError& error) {
@@ -261,12 +261,13 @@ coordinator::Pipeline Study::BeginRun(const Variant& variant, const coordinator:
   return pipeline;
 }
 
-evaluate::Metrics Study::Evaluate(const Variant& variant, coordinator::Pipeline& pipeline) const {
+evaluate::metrics::Metrics Study::Evaluate(const Variant& variant, coordinator::Pipeline& pipeline) const {
   pipeline.settings.evaluate.scored_pixels_folder = RunFolder(variant) / "covered";
   return coordinator::EvaluateStage(pipeline);
 }
 
-evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training) {
+evaluate::metrics::Metrics Study::Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew,
+                                        scene::TrainReport* training) {
   coordinator::Pipeline pipeline = BeginRun(variant, settings, merge_anew);
   const coordinator::Project& project = pipeline.project;
   base::ResetPeakRss();
@@ -287,7 +288,7 @@ evaluate::Metrics Study::Train(const Variant& variant, const coordinator::Settin
 }
 
 VariantResult Study::Collect(const Variant& trained, const Variant& scored, const scene::TrainReport& training,
-                             const evaluate::Metrics& metrics) const {
+                             const evaluate::metrics::Metrics& metrics) const {
   const coordinator::Project project{RunFolder(trained)};
   VariantResult r;
   r.name = scored.name;
@@ -322,13 +323,13 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
   std::vector<std::string> names;
   for (const scene::FieldTraining& field : training.fields) names.push_back(field.name);
-  const evaluate::Curves curves = evaluate::ReadCurves(project.CheckpointFolder(), names);
+  const evaluate::metrics::Curves curves = evaluate::metrics::ReadCurves(project.CheckpointFolder(), names);
   for (const scene::FieldTraining& field : training.fields) {
     r.samples += static_cast<double>(field.samples);
     r.parameters += static_cast<double>(field.parameters);
     const auto block = std::find_if(blocks.blocks.begin(), blocks.blocks.end(), [&field](const partition::Block& b) { return b.name == field.name; });
     const auto score =
-        std::find_if(metrics.blocks.begin(), metrics.blocks.end(), [&field](const evaluate::BlockScore& b) { return b.name == field.name; });
+        std::find_if(metrics.blocks.begin(), metrics.blocks.end(), [&field](const evaluate::metrics::BlockScore& b) { return b.name == field.name; });
     const auto stored = kept.find(field.name);
     r.fields.push_back({.name = field.name,
                         .parameters = field.parameters,

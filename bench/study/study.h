@@ -2,7 +2,7 @@
 // interrupted bench continues with the next variant; large files of finished variants are removed.
 //   FOLDER/source/                   the survey that all variants use (unless it is given as a project)
 //   FOLDER/runs/<variant>/           project: blocks.geojson, train.json, report/ and the rest
-//   FOLDER/runs/<variant>/covered/   which pixels of held-out photos were scored, and their errors (evaluate/scored_pixels.h)
+//   FOLDER/runs/<variant>/covered/   which pixels of held-out photos were scored, and their errors (evaluate/photos/scored_pixels.h)
 //   FOLDER/runs/<variant>.json       result
 #pragma once
 
@@ -22,7 +22,7 @@
 #include "core/comm/communicator.h"
 #include "core/scene/train_report.h"
 #include "core/survey/survey.h"
-#include "evaluate/metrics.h"
+#include "evaluate/metrics/metrics.h"
 
 namespace skyquilt::bench {
 
@@ -71,23 +71,23 @@ struct VariantResult {
   double psnr_common_db = kNone;  // over those that all variants cover that it is compared with (common_pixels.h); never in its saved result
   double ssim = kNone, flip = kNone, lpips = kNone, psnr_full_db = kNone, coverage = kNone, seam_gap_db = kNone;
   double depth_rmse_m = kNone, depth_median_abs_m = kNone, floater_opacity = kNone;  // simulated surveys
-  double kept_median_gsd = kNone, kept_nmad_gsd = kNone;  // against sparse points kept from training, evaluate::KeptPointErrors
+  double kept_median_gsd = kNone, kept_nmad_gsd = kNone;  // against sparse points kept from training, evaluate::photos::KeptPointErrors
   double train_seconds = kNone, samples_per_second = kNone, samples = kNone, peak_rss_bytes = kNone;
   std::vector<std::pair<double, double>> floater_profile;  // simulated surveys: (metres in front of the true surface, opacity up to there)
   double parameters = kNone;                               // trained, of all fields
   double scene_parameters = kNone, scene_bytes = kNone, evaluate_seconds = kNone;
   int blocks = 0, training_photos = 0;
-  std::string layout;                                        // of the blocks, rows x columns: "3x3"
-  std::vector<VariantField> fields;                          // context first
-  std::vector<std::pair<double, double>> curve;              // (training seconds of all fields together, mean PSNR of their batches)
-  std::string photo, render, error;                          // image files of one held-out photo, relative to FOLDER; may be empty
-  std::string report;                                        // its report, relative to FOLDER
-  std::vector<ScaleScore> scales;                            // when the study measures them
-  std::string scale_pictures;                                // folder of their pictures, relative to FOLDER; may be empty
-  std::vector<evaluate::ClassScore> classes;                 // simulated surveys with true classes
-  double flat_roof_rms_m = kNone, flat_roof_nmad_m = kNone;  // the same; evaluate::FlatRoofScore
-  std::string views;                                         // folder of the pictures that WriteViews makes, relative to FOLDER; may be empty
-  std::optional<evaluate::BuildingScores> buildings;         // when the study measures them
+  std::string layout;                                            // of the blocks, rows x columns: "3x3"
+  std::vector<VariantField> fields;                              // context first
+  std::vector<std::pair<double, double>> curve;                  // (training seconds of all fields together, mean PSNR of their batches)
+  std::string photo, render, error;                              // image files of one held-out photo, relative to FOLDER; may be empty
+  std::string report;                                            // its report, relative to FOLDER
+  std::vector<ScaleScore> scales;                                // when the study measures them
+  std::string scale_pictures;                                    // folder of their pictures, relative to FOLDER; may be empty
+  std::vector<evaluate::metrics::ClassScore> classes;            // simulated surveys with true classes
+  double flat_roof_rms_m = kNone, flat_roof_nmad_m = kNone;      // the same; evaluate::photos::FlatRoofScore
+  std::string views;                                             // folder of the pictures that WriteViews makes, relative to FOLDER; may be empty
+  std::optional<evaluate::buildings::BuildingScores> buildings;  // when the study measures them
   // The trainings of which the single numbers are medians; all else is of the first that succeeded. Empty: this is one training.
   std::vector<VariantResult> seeds;
 };
@@ -142,14 +142,15 @@ class Study {
   void RemoveLargeFiles(const Variant& variant) const;
   std::filesystem::path RunFolder(const Variant& variant) const { return options_.folder / "runs" / variant.name; }
   // Scores the scene of the pipeline's project as that of the variant.
-  evaluate::Metrics Evaluate(const Variant& variant, coordinator::Pipeline& pipeline) const;
+  evaluate::metrics::Metrics Evaluate(const Variant& variant, coordinator::Pipeline& pipeline) const;
   std::string Identity(const Variant& variant, const coordinator::Settings& settings) const;
   // The variant's project with survey and blocks.
   coordinator::Pipeline BeginRun(const Variant& variant, const coordinator::Settings& settings, bool merge_anew) const;
-  evaluate::Metrics Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training);
+  evaluate::metrics::Metrics Train(const Variant& variant, const coordinator::Settings& settings, bool merge_anew, scene::TrainReport* training);
   void LinkPixels(const std::filesystem::path& run_folder, int image_width, bool share) const;
   // Puts together the result of `scored` from the training of `trained` (the same variant or not), the metrics, and the files of both.
-  VariantResult Collect(const Variant& trained, const Variant& scored, const scene::TrainReport& training, const evaluate::Metrics& metrics) const;
+  VariantResult Collect(const Variant& trained, const Variant& scored, const scene::TrainReport& training,
+                        const evaluate::metrics::Metrics& metrics) const;
   // What is asked for beside the report: scores at several scales, pictures.
   void AddFromScene(const Variant& variant, const coordinator::Settings& settings, VariantResult* result) const;
   std::optional<VariantResult> Load(const Variant& variant, const std::string& identity) const;

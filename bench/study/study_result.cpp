@@ -8,9 +8,9 @@
 
 #include "bench/study/study.h"
 #include "core/base/json_text.h"
-#include "evaluate/buildings_json.h"
-#include "evaluate/class_json.h"
-#include "evaluate/metrics.h"
+#include "evaluate/buildings/buildings_json.h"
+#include "evaluate/metrics/class_json.h"
+#include "evaluate/metrics/metrics.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -92,9 +92,9 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"frame_seconds", OrNull(score.frame_seconds)}});
   }
   json["scale_pictures"] = result.scale_pictures;
-  json["classes"] = evaluate::ToJson(std::span<const evaluate::ClassScore>(result.classes));
+  json["classes"] = ToJson(std::span<const evaluate::metrics::ClassScore>(result.classes));
   json["views"] = result.views;
-  if (result.buildings) json["buildings"] = evaluate::ToJson(*result.buildings);
+  if (result.buildings) json["buildings"] = ToJson(*result.buildings);
   json["curve"] = result.curve;
   json["floater_profile"] = result.floater_profile;
   for (const auto& [key, value] :
@@ -141,9 +141,9 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .frame_seconds = OrNone(score.at("frame_seconds"))});
   }
   result.scale_pictures = json.value("scale_pictures", "");
-  result.classes = evaluate::ClassScoresFromJson(json.value("classes", Json()));
+  result.classes = evaluate::metrics::ClassScoresFromJson(json.value("classes", Json()));
   result.views = json.value("views", "");
-  if (json.contains("buildings")) result.buildings = evaluate::BuildingScoresFromJson(json.at("buildings"));
+  if (json.contains("buildings")) result.buildings = evaluate::buildings::BuildingScoresFromJson(json.at("buildings"));
   json.at("curve").get_to(result.curve);
   json.at("floater_profile").get_to(result.floater_profile);
   for (const auto& [key, value] :

@@ -16,7 +16,7 @@ constexpr uint8_t kGrey = 128;
 
 }  // namespace
 
-TrueRays::TrueRays(evaluate::TrueSurface truth, const survey::Survey& survey, const image::PixelCache* pixels)
+TrueRays::TrueRays(evaluate::surface::TrueSurface truth, const survey::Survey& survey, const image::PixelCache* pixels)
     : truth_(std::move(truth)), traced_(truth_.position, truth_.triangle), pixels_(pixels) {
   if (pixels == nullptr) return;
   Eigen::Vector2d high = Eigen::Vector2d::Constant(-std::numeric_limits<double>::infinity());

@@ -12,7 +12,7 @@
 #include "core/raytrace/traced_scene.h"
 #include "core/render/ray.h"
 #include "core/survey/survey.h"
-#include "evaluate/surface_truth.h"
+#include "evaluate/surface/true_surface.h"
 
 namespace skyquilt::bench {
 
@@ -21,7 +21,7 @@ namespace skyquilt::bench {
 class TrueRays {
  public:
   // pixels: entry i belongs to survey.photos[i]; null: everything is grey. Survey and pixels must outlive it.
-  TrueRays(evaluate::TrueSurface truth, const survey::Survey& survey, const image::PixelCache* pixels);
+  TrueRays(evaluate::surface::TrueSurface truth, const survey::Survey& survey, const image::PixelCache* pixels);
 
   // Fills `seen`, which is as long as `rays`. The same for any number of threads.
   void Cast(std::span<const render::Ray> rays, std::span<render::RayColor> seen, base::ThreadPool& threads) const;
@@ -42,7 +42,7 @@ class TrueRays {
   std::optional<Rgb> ColorIn(const Camera& camera, const Eigen::Vector3d& x_in_enu) const;
   const std::vector<size_t>& Nearest(const Eigen::Vector3d& x_in_enu) const;
 
-  evaluate::TrueSurface truth_;
+  evaluate::surface::TrueSurface truth_;
   raytrace::TracedScene traced_;  // relative to truth_.middle
   const image::PixelCache* pixels_;
   std::vector<Camera> cameras_;  // of the training photos

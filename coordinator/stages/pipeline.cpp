@@ -53,7 +53,7 @@ void BuildingsStage(Pipeline& pipeline) {
   RunStage(pipeline, "buildings");
 }
 
-const evaluate::Metrics& EvaluateStage(Pipeline& pipeline) {
+const evaluate::metrics::Metrics& EvaluateStage(Pipeline& pipeline) {
   RunStage(pipeline, "evaluate");
   return pipeline.metrics;
 }

@@ -13,7 +13,7 @@
 #include "coordinator/project/settings.h"
 #include "core/comm/communicator.h"
 #include "core/scene/train_report.h"
-#include "evaluate/metrics.h"
+#include "evaluate/metrics/metrics.h"
 #include "tour/export/export_parts.h"
 
 namespace skyquilt::coordinator {
@@ -32,7 +32,7 @@ struct Pipeline {
   std::function<tour::ExportParts(const Project& project)> tour_parts = {};
   // Results of "train" and "evaluate"; read from their files when the stage had nothing to do.
   scene::TrainReport training = {};
-  evaluate::Metrics metrics = {};
+  evaluate::metrics::Metrics metrics = {};
 };
 
 // Throws base::UsageError when `first` or any later stage has results of another configuration. Called before the first stage, so that a conflict
@@ -64,7 +64,7 @@ struct TourRequest {
 // Stage "tour" for any folder: exports the project's tour; proposes one first where that is asked for. Throws base::UsageError when there is one then
 // that a person made.
 void ExportProjectTour(Pipeline& pipeline, const TourRequest& request);
-const evaluate::Metrics& EvaluateStage(Pipeline& pipeline);
+const evaluate::metrics::Metrics& EvaluateStage(Pipeline& pipeline);
 // `run`: all stages that the settings ask for. photos may be empty: a survey is simulated, in the project's folder.
 void RunStages(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model);
 

@@ -169,14 +169,14 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp) {
                                       .progress_file = project.EvaluateProgressFile(),
                                       .progress_key = ScoresKey(pipeline, stamp)};
   pipeline.metrics = evaluate::Evaluate(input, threads);
-  const evaluate::Metrics& metrics = pipeline.metrics;
+  const evaluate::metrics::Metrics& metrics = pipeline.metrics;
   base::LogInfo(
       "{} held-out photos: PSNR {:.2f} dB, SSIM {:.3f}, FLIP {:.3f} over the {:.0f} % of pixels that are covered; PSNR of full frames {:.2f} dB",
       metrics.photos.size(), metrics.psnr, metrics.ssim, metrics.flip, 100.0 * metrics.coverage, metrics.psnr_full_frame);
   if (metrics.has_truth) {
     base::LogInfo("depth error against ground truth: median {:.2f} m, RMSE {:.2f} m", metrics.depth_median_abs_m, metrics.depth_rmse_m);
   }
-  if (const evaluate::KeptPointErrors& kept = metrics.kept_points; kept.rays > 0) {
+  if (const evaluate::photos::KeptPointErrors& kept = metrics.kept_points; kept.rays > 0) {
     base::LogInfo("distance error against {} sparse points kept from training: median {:+.2f} GSD, NMAD {:.2f} GSD", kept.points, kept.median_gsd,
                   kept.nmad_gsd);
   }

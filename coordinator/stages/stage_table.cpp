@@ -143,7 +143,7 @@ bool RecallTraining(Pipeline& pipeline) {
 
 bool RecallMetrics(Pipeline& pipeline) {
   try {
-    pipeline.metrics = evaluate::ReadMetrics(pipeline.project.MetricsFile());
+    pipeline.metrics = evaluate::metrics::ReadMetrics(pipeline.project.MetricsFile());
     return true;
   } catch (const base::InputError& error) {
     base::LogWarning("{}", error.what());

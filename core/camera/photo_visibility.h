@@ -4,7 +4,7 @@
 //                          All edges of the frame count as inside. Masks are not used.
 //   worker/start/view_count places that can be learned: balls around groups of cells, because a photo that shows only a part of a group helps too.
 //                          A ball around or next to the camera counts in any direction. No maximum distance, no masks.
-//   evaluate/coverage      pixels that are scored: surface points that a training photo shows on an unmasked pixel. No maximum distance.
+//   evaluate/photos        pixels that are scored: surface points that a training photo shows on an unmasked pixel. No maximum distance.
 #pragma once
 
 #include <Eigen/Core>

@@ -11,7 +11,7 @@
 namespace skyquilt::bench {
 namespace {
 
-using evaluate::BuildingOutcome;
+using evaluate::buildings::BuildingOutcome;
 using Fate = BuildingOutcome::Fate;
 
 BuildingOutcome Matched(double area_m2, double length_error_m, double sigma_m, const std::string& roof = "flat") {

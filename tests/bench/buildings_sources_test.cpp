@@ -12,7 +12,7 @@
 #include "surface/make_surface.h"
 #include "tests/buildings/sample_buildings.h"
 #include "tests/buildings/sample_clouds.h"
-#include "tests/evaluate/surface_sample.h"
+#include "tests/evaluate/surface/surface_sample.h"
 #include "tests/support/nadir_photo.h"
 #include "tests/support/temporary_folder.h"
 
@@ -23,7 +23,7 @@ using survey::SurfaceClass;
 
 constexpr double kDeck_m = 6.0, kWest_m = -8.0, kEast_m = 8.0, kSouth_m = -5.0, kNorth_m = 5.0;
 
-void AddWall(const Eigen::Vector2d& from, const Eigen::Vector2d& to, evaluate::TrueSurface* truth) {
+void AddWall(const Eigen::Vector2d& from, const Eigen::Vector2d& to, evaluate::surface::TrueSurface* truth) {
   const auto first = static_cast<uint32_t>(truth->position.size());
   for (const auto& [at, z] : {std::pair{from, 0.0}, {to, 0.0}, {to, kDeck_m}, {from, kDeck_m}}) {
     truth->position.push_back((Eigen::Vector3d(at.x(), at.y(), z) - truth->middle).cast<float>());
@@ -34,11 +34,11 @@ void AddWall(const Eigen::Vector2d& from, const Eigen::Vector2d& to, evaluate::T
 }
 
 // A box of 16 x 10 x 6 m on level ground.
-evaluate::TrueSurface BoxOnGround() {
-  evaluate::TrueSurface truth;
+evaluate::surface::TrueSurface BoxOnGround() {
+  evaluate::surface::TrueSurface truth;
   truth.middle = {3.0, -2.0, 1.0};
-  evaluate::AddPlate({-60, -60, 60, 60, 0}, SurfaceClass::kGround, &truth);
-  evaluate::AddPlate({kWest_m, kSouth_m, kEast_m, kNorth_m, kDeck_m}, SurfaceClass::kRoof, &truth);
+  evaluate::surface::AddPlate({-60, -60, 60, 60, 0}, SurfaceClass::kGround, &truth);
+  evaluate::surface::AddPlate({kWest_m, kSouth_m, kEast_m, kNorth_m, kDeck_m}, SurfaceClass::kRoof, &truth);
   const std::vector<Eigen::Vector2d> ring = {{kWest_m, kSouth_m}, {kEast_m, kSouth_m}, {kEast_m, kNorth_m}, {kWest_m, kNorth_m}};
   for (size_t i = 0; i < ring.size(); ++i) AddWall(ring[i], ring[(i + 1) % ring.size()], &truth);
   return truth;

@@ -10,7 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/random.h"
 #include "core/metrics/psnr.h"
-#include "evaluate/scored_pixels.h"
+#include "evaluate/photos/scored_pixels.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::bench {
@@ -43,11 +43,11 @@ double PsnrOver(const image::Image8& photo, const image::Image8& render, const i
 
 // Of errors as pictures keep them, in 8 bits.
 double PsnrOfRounded(const image::Image8& photo, const image::Image8& render, const image::Image8& mask) {
-  const image::Image8 picture = evaluate::ScoredPixels(photo, render, mask);
+  const image::Image8 picture = evaluate::photos::ScoredPixels(photo, render, mask);
   double sum = 0.0, n = 0.0;
   for (const uint8_t value : picture.data) {
     if (value == 0) continue;
-    sum += evaluate::SquaredErrorOf(value);
+    sum += evaluate::photos::SquaredErrorOf(value);
     n += 1.0;
   }
   return -10.0 * std::log10(sum / n);
@@ -58,7 +58,7 @@ class CommonPixels : public testing::Test {
   void Save(const std::string& variant, const std::string& photo, const image::Image8& render, const image::Image8& mask) {
     const std::filesystem::path file = folder_ / "runs" / variant / "covered" / (photo + ".png");
     base::RequireWritableFolder(file.parent_path());
-    image::SavePng(evaluate::ScoredPixels(photo_, render, mask), file);
+    image::SavePng(evaluate::photos::ScoredPixels(photo_, render, mask), file);
   }
   static VariantResult Result(const std::string& name) {
     VariantResult result;
@@ -80,15 +80,15 @@ TEST(ScoredPixels, KeepSmallAndLargeErrors) {
   const image::Image8 photo(kSize, kSize, 3, 120), all = Columns(0, kSize);
   for (const auto& [amplitude, off_db] : {std::pair{2, 0.1}, {5, 0.05}, {20, 0.02}, {110, 0.01}}) {
     const image::Image8 render = NoisyRender(photo, amplitude, 3);
-    const image::Image8 pixels = evaluate::ScoredPixels(photo, render, all);
+    const image::Image8 pixels = evaluate::photos::ScoredPixels(photo, render, all);
     metrics::SquaredError error;
-    for (const uint8_t value : pixels.data) error += {evaluate::SquaredErrorOf(value), 1};
+    for (const uint8_t value : pixels.data) error += {evaluate::photos::SquaredErrorOf(value), 1};
     EXPECT_NEAR(metrics::PsnrOf(error), PsnrOver(photo, render, all), off_db) << amplitude;
   }
   const image::Image8 white(2, 2, 3, 255), black(2, 2, 3, 0);
-  EXPECT_EQ(evaluate::ScoredPixels(white, black, image::Image8(2, 2, 1, 1)).data, std::vector<uint8_t>(4, 255));
-  EXPECT_EQ(evaluate::ScoredPixels(white, white, image::Image8(2, 2, 1, 1)).data, std::vector<uint8_t>(4, 1)) << "scored, without error";
-  EXPECT_EQ(evaluate::ScoredPixels(white, black, image::Image8(2, 2, 1, 0)).data, std::vector<uint8_t>(4, 0));
+  EXPECT_EQ(evaluate::photos::ScoredPixels(white, black, image::Image8(2, 2, 1, 1)).data, std::vector<uint8_t>(4, 255));
+  EXPECT_EQ(evaluate::photos::ScoredPixels(white, white, image::Image8(2, 2, 1, 1)).data, std::vector<uint8_t>(4, 1)) << "scored, without error";
+  EXPECT_EQ(evaluate::photos::ScoredPixels(white, black, image::Image8(2, 2, 1, 0)).data, std::vector<uint8_t>(4, 0));
 }
 
 TEST_F(CommonPixels, AreThoseThatAllVariantsScore) {

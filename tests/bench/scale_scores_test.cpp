@@ -11,8 +11,8 @@ namespace skyquilt::bench {
 namespace {
 
 // A pinhole camera that looks straight down from 10 m above the origin; x to the east, 1 rad over half its width.
-evaluate::HeldOutPhoto Photo(int width, int height, uint8_t value) {
-  evaluate::HeldOutPhoto photo;
+evaluate::photos::HeldOutPhoto Photo(int width, int height, uint8_t value) {
+  evaluate::photos::HeldOutPhoto photo;
   const double focal = 0.5 * width;
   photo.camera = {.model = camera::CameraModel::kPinhole, .width = width, .height = height, .params = {focal, focal, 0.5 * width, 0.5 * height}};
   photo.cam_from_enu.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
@@ -42,7 +42,7 @@ TEST(ScoreAtScales, OfAConstantImageIsTheSameAtAllScales) {
 }
 
 TEST(ScoreAtScales, AveragesTruthAndFullFrameInLinearLight) {
-  evaluate::HeldOutPhoto photo = Photo(4, 2, 0);
+  evaluate::photos::HeldOutPhoto photo = Photo(4, 2, 0);
   for (int y = 0; y < 2; ++y) {
     for (int x = 0; x < 4; x += 2) std::fill_n(photo.photo.At(x, y), 3, uint8_t{255});
   }
@@ -63,7 +63,7 @@ TEST(ScoreAtScales, AveragesTruthAndFullFrameInLinearLight) {
 }
 
 TEST(ScoreAtScales, IgnoresMaskedPixels) {
-  evaluate::HeldOutPhoto photo = Photo(8, 8, 100);
+  evaluate::photos::HeldOutPhoto photo = Photo(8, 8, 100);
   photo.mask.assign(64, 255);
   for (size_t i = 0; i < 8; ++i) {
     photo.mask[i] = 0;
@@ -77,7 +77,7 @@ TEST(ScoreAtScales, IgnoresMaskedPixels) {
 }
 
 TEST(SceneLight, DividesByTheGain) {
-  evaluate::PhotoResponse recording;
+  evaluate::photos::PhotoResponse recording;
   recording.log_gain = {std::log(2.0F), 0.0F, std::log(0.25F)};
   const TrueView view = SceneLight(Photo(3, 3, 120), recording);
   const float light = image::LinearFromSrgb(120.0F / 255.0F);
@@ -87,7 +87,7 @@ TEST(SceneLight, DividesByTheGain) {
 }
 
 TEST(SceneLight, DividesByTheVignetting) {
-  evaluate::PhotoResponse recording;
+  evaluate::photos::PhotoResponse recording;
   recording.vignetting = {-0.5F, 0.0F, 0.0F};
   const TrueView view = SceneLight(Photo(9, 9, 120), recording);
   EXPECT_GT(view.light.At(0, 0)[0], 1.2F * view.light.At(4, 4)[0]);
@@ -95,7 +95,7 @@ TEST(SceneLight, DividesByTheVignetting) {
 }
 
 TEST(KeepArea, ScoresOnlyPixelsWhoseSurfaceIsInside) {
-  evaluate::HeldOutPhoto photo = Photo(8, 8, 120);
+  evaluate::photos::HeldOutPhoto photo = Photo(8, 8, 120);
   photo.true_depth = image::ImageF(8, 8, 1, 10.0F);  // the ground: the photo shows 20 x 20 m of it
   *photo.true_depth.At(7, 0) = std::numeric_limits<float>::quiet_NaN();
   TrueView view = SceneLight(photo, {});

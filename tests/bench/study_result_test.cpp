@@ -42,7 +42,7 @@ VariantResult Example() {
   r.buildings.emplace().found = 3;
   r.buildings->truth.emplace().detection = {{.size = "all", .outlines = 1, .missed = 1}};
   r.buildings->truth->roofs = {{.roof = "all", .errors = {}}};
-  r.buildings->truth->each = {{.fate = evaluate::BuildingOutcome::Fate::kMissed, .truth_id = 4, .roof = "hip", .area_m2 = 60.0}};
+  r.buildings->truth->each = {{.fate = evaluate::buildings::BuildingOutcome::Fate::kMissed, .truth_id = 4, .roof = "hip", .area_m2 = 60.0}};
   return r;
 }
 

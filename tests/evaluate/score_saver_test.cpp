@@ -9,7 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/random.h"
-#include "tests/evaluate/nadir_view.h"
+#include "tests/evaluate/photos/nadir_view.h"
 #include "tests/support/not_finite.h"
 #include "tests/support/temporary_folder.h"
 
@@ -20,8 +20,8 @@ constexpr int kSavedWidth = 10, kSavedHeight = 8;
 constexpr size_t kSavedBoxes = 3;
 
 struct RandomPhoto {
-  ScoredPhoto photo;
-  SurfacePicture mesh;
+  photos::ScoredPhoto photo;
+  surface::SurfacePicture mesh;
 
   // truth: as in a simulated survey.
   RandomPhoto(int number, bool truth, base::Random& random) {
@@ -31,11 +31,11 @@ struct RandomPhoto {
       const double otherwise = random.Uniform(0.0, 1.0) < 0.5 ? kNan : kInfinity;
       return some(value, otherwise);
     };
-    const TrainingView view = NadirView(0, 0, 100);
+    const photos::TrainingView view = photos::NadirView(0, 0, 100);
     photo.task.camera = view.camera.Resized(kSavedWidth, kSavedHeight);
     photo.task.cam_from_enu = view.cam_from_enu;
     photo.task.photo = image::Image8(kSavedWidth, kSavedHeight, 3);
-    PhotoResult& findings = photo.findings;
+    photos::PhotoResult& findings = photo.findings;
     findings.scored = image::Image8(kSavedWidth, kSavedHeight, 1, 1);
     findings.render = image::Image8(kSavedWidth, kSavedHeight, 3);
     findings.z_depth = image::ImageF(kSavedWidth, kSavedHeight, 1);
@@ -48,21 +48,22 @@ struct RandomPhoto {
     for (uint8_t& flag : mesh.has_mesh) flag = static_cast<uint8_t>(some(1.0, 0.0));
     for (render::RayColor& color : mesh.colors) color.rgb_srgb[1] = static_cast<float>(random.Uniform(0.0, 1.0));
     findings.per_block.resize(kSavedBoxes);
-    for (metrics::SquaredError& error : findings.per_block) error = {random.Uniform(0.0, 9.0), 30};
-    for (metrics::SquaredError& error : findings.seams.interior) error = {random.Uniform(0.0, 9.0), 30};
-    for (metrics::SquaredError& error : findings.seams.seam) error = {random.Uniform(0.0, 9.0), 3};
-    PhotoScore& score = findings.score;
+    for (skyquilt::metrics::SquaredError& error : findings.per_block) error = {random.Uniform(0.0, 9.0), 30};
+    for (skyquilt::metrics::SquaredError& error : findings.seams.interior) error = {random.Uniform(0.0, 9.0), 30};
+    for (skyquilt::metrics::SquaredError& error : findings.seams.seam) error = {random.Uniform(0.0, 9.0), 3};
+    photos::PhotoScore& score = findings.score;
     score.photo = 3 * number;
     score.name = "photos/" + std::to_string(number) + ".jpg";
     score.width = kSavedWidth;
     score.height = kSavedHeight;
     score.used_pixels = 80;
     score.covered_pixels = 70 + number;
-    for (double PhotoScore::*value :
-         {&PhotoScore::exposure_gain, &PhotoScore::psnr_db, &PhotoScore::psnr_exif_gain_db, &PhotoScore::psnr_normal_db, &PhotoScore::ssim_normal,
-          &PhotoScore::ssim, &PhotoScore::flip, &PhotoScore::psnr_full_db, &PhotoScore::ssim_full, &PhotoScore::flip_full, &PhotoScore::lpips,
-          &PhotoScore::right_half_db, &PhotoScore::right_half_fitted_db, &PhotoScore::depth_rmse_m, &PhotoScore::depth_median_abs_m,
-          &PhotoScore::render_seconds}) {
+    for (double photos::PhotoScore::*value :
+         {&photos::PhotoScore::exposure_gain, &photos::PhotoScore::psnr_db, &photos::PhotoScore::psnr_exif_gain_db,
+          &photos::PhotoScore::psnr_normal_db, &photos::PhotoScore::ssim_normal, &photos::PhotoScore::ssim, &photos::PhotoScore::flip,
+          &photos::PhotoScore::psnr_full_db, &photos::PhotoScore::ssim_full, &photos::PhotoScore::flip_full, &photos::PhotoScore::lpips,
+          &photos::PhotoScore::right_half_db, &photos::PhotoScore::right_half_fitted_db, &photos::PhotoScore::depth_rmse_m,
+          &photos::PhotoScore::depth_median_abs_m, &photos::PhotoScore::render_seconds}) {
       score.*value = any(0.0, 40.0);
     }
     for (double& stops : score.predicted_stops) stops = any(-1.0, 1.0);
@@ -73,7 +74,7 @@ struct RandomPhoto {
  private:
   template <typename Any>
   void AddTruth(const Any& any, base::Random& random) {
-    PhotoResult& findings = photo.findings;
+    photos::PhotoResult& findings = photo.findings;
     findings.true_depth = image::ImageF(kSavedWidth, kSavedHeight, 1, 100.0F);
     findings.true_class = image::Image8(kSavedWidth, kSavedHeight, 1, static_cast<uint8_t>(survey::SurfaceClass::kRoof));
     findings.true_normals = image::ImageF(kSavedWidth, kSavedHeight, 3, 0.0F);
@@ -97,19 +98,19 @@ struct RandomPhoto {
 
 // What an evaluation accumulates.
 struct Accumulated {
-  Scores scores{kSavedBoxes};
-  SurfacePhotoErrors surface;
-  WrittenPictures pictures;
+  metrics::Scores scores{kSavedBoxes};
+  surface::SurfacePhotoErrors surface;
+  page::WrittenPictures pictures;
 
   Accumulated() {
-    scores.flat_roofs = FlatRoofPoints({{{-30, 0}, {1, 0}, {30, 50}}, {{30, 0}, {0, 1}, {50, 30}}});
+    scores.flat_roofs = photos::FlatRoofPoints({{{-30, 0}, {1, 0}, {30, 50}}, {{30, 0}, {0, 1}, {50, 30}}});
     pictures.views.resize(2);
   }
   void Add(const RandomPhoto& one) {
     surface.Add(one.photo.task, one.photo.findings, one.mesh);
     scores.Add(one.photo);
-    PhotoImages images;
-    const PhotoScore& score = one.photo.findings.score;
+    page::PhotoImages images;
+    const photos::PhotoScore& score = one.photo.findings.score;
     if (score.photo % 2 == 0) {
       images.photo = "images/photo_" + std::to_string(score.photo) + ".jpg";
       images.width = kSavedWidth;
@@ -141,7 +142,7 @@ struct Accumulated {
     base::BytePacker out;
     out.Add(scores.Psnr());
     out.Add(scores.Coverage());
-    for (const PhotoScore& photo : scores.photos) {
+    for (const photos::PhotoScore& photo : scores.photos) {
       out.Add(photo.name);
       out.Add(std::array{photo.psnr_db, photo.lpips, photo.fitted_stops[2], photo.depth_median_abs_m, photo.render_seconds});
       out.Add(std::array{photo.used_pixels, photo.covered_pixels, int64_t{photo.photo}, int64_t{photo.width}});
@@ -149,22 +150,22 @@ struct Accumulated {
     out.Add(scores.per_block);
     out.Add(scores.seams.GapDb());
     out.Add(scores.depth.Result());
-    for (const ClassScore& one : scores.classes.Result()) {
+    for (const metrics::ClassScore& one : scores.classes.Result()) {
       out.Add(one.name);
       out.Add(std::array{one.pixels, one.missing_pixels});
       out.Add(std::array{one.depth_bias_m, one.depth_median_abs_m, one.depth_nmad_m, one.depth_rmse_m, one.normal_median_deg, one.normal_mean_deg,
                          one.density_normal_median_deg, one.head_normal_median_deg});
     }
-    const FlatRoofScore roofs = scores.flat_roofs.Result();
+    const photos::FlatRoofScore roofs = scores.flat_roofs.Result();
     out.Add(roofs.roofs);
     out.Add(std::array{roofs.spread.rms_m, roofs.spread.nmad_m});
     for (const auto& [clearance_m, opacity] : scores.floaters.Profile()) out.Add(opacity);
-    SurfaceScores mesh;
+    surface::SurfaceScores mesh;
     surface.Fill(&mesh);
     out.Add(std::array{mesh.psnr, mesh.psnr_field, mesh.psnr_where_mesh, mesh.psnr_field_where_mesh, mesh.missing_share});
-    for (const SurfaceClassScore& one : mesh.classes) out.Add(std::array{one.psnr_db, one.psnr_field_db});
-    for (const PhotoImages& images : pictures.images) out.Add(images.photo);
-    for (const BrightnessView& view : pictures.views) out.Add(view.name);
+    for (const surface::SurfaceClassScore& one : mesh.classes) out.Add(std::array{one.psnr_db, one.psnr_field_db});
+    for (const page::PhotoImages& images : pictures.images) out.Add(images.photo);
+    for (const page::BrightnessView& view : pictures.views) out.Add(view.name);
     return out.Take();
   }
 };
@@ -197,9 +198,9 @@ TEST(SavedScores, OfThePhotosOfTheseTestsAreMeasured) {
   EXPECT_GT(all.scores.depth.Result().n, 100);
   ASSERT_EQ(all.scores.classes.Result().size(), 5U);
   EXPECT_GT(all.scores.classes.Result()[0].pixels, 50);
-  SurfaceScores mesh;
+  surface::SurfaceScores mesh;
   all.surface.Fill(&mesh);
-  EXPECT_EQ(mesh.classes.size(), ScoredClasses().size());
+  EXPECT_EQ(mesh.classes.size(), surface::ScoredClasses().size());
 }
 
 TEST(SavedScores, OfOtherBoxesRoofsOrViewsAreRefused) {
@@ -208,7 +209,7 @@ TEST(SavedScores, OfOtherBoxesRoofsOrViewsAreRefused) {
   EXPECT_NO_THROW(Accumulated().Load(saved));
   boxes.scores.per_block.resize(kSavedBoxes + 1);
   EXPECT_THROW(boxes.Load(saved), base::UnreadableBytes);
-  roofs.scores.flat_roofs = FlatRoofPoints(std::vector<RoofArea>(1));
+  roofs.scores.flat_roofs = photos::FlatRoofPoints(std::vector<photos::RoofArea>(1));
   EXPECT_THROW(roofs.Load(saved), base::UnreadableBytes);
   views.pictures.views.clear();
   EXPECT_THROW(views.Load(saved), base::UnreadableBytes);
@@ -225,7 +226,7 @@ class SavedEvaluation : public ::testing::Test {
     base::Random random(7);
     for (int i = 0; i < 2; ++i) {
       before_.Add({i, true, random});
-      for (const PhotoImages& images : before_.pictures.images) Touch(images.photo);
+      for (const page::PhotoImages& images : before_.pictures.images) Touch(images.photo);
     }
     Touch("images/view.jpg");
     ScoreSaver(input_, held_out_, before_.State()).Save();
@@ -293,7 +294,7 @@ TEST_F(SavedEvaluation, WithoutItsViewsBeginsAnew) {
 TEST_F(SavedEvaluation, WithoutItsScoredPixelsBeginsAnew) {
   input_.options.scored_pixels_folder = folder_ / "pixels";
   std::filesystem::create_directories(folder_ / "pixels" / "photos");
-  for (const PhotoScore& photo : before_.scores.photos) std::ofstream(folder_ / "pixels" / (photo.name + ".png")) << "picture";
+  for (const photos::PhotoScore& photo : before_.scores.photos) std::ofstream(folder_ / "pixels" / (photo.name + ".png")) << "picture";
   ScoreSaver(input_, held_out_, before_.State()).Save();
   EXPECT_EQ(PhotosOf(input_, held_out_), 2U);
   std::filesystem::remove_all(folder_ / "pixels");

@@ -179,9 +179,9 @@ TEST_F(StageFiles, AStageWithUnreadableResultsRunsAgain) {
   const auto comm = comm::ConnectAlone();
   Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
   scene::WriteTrainReport({.ranks = 2, .config_hash = "a", .fields = {{.name = "context", .ok = true}}}, project_.TrainReport());
-  evaluate::Metrics metrics;
+  evaluate::metrics::Metrics metrics;
   metrics.psnr = 27.5;
-  Touch(project_.MetricsFile(), evaluate::MetricsJson(metrics));
+  Touch(project_.MetricsFile(), evaluate::metrics::MetricsJson(metrics));
   EXPECT_TRUE(StageNamed("train").load_results(pipeline));
   EXPECT_EQ(pipeline.training.ranks, 2);
   EXPECT_TRUE(StageNamed("evaluate").load_results(pipeline));

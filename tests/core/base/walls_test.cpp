@@ -80,6 +80,16 @@ const std::map<std::string, InnerRoom>& InnerRooms() {
             {"georeference", {"control", "poses", "input", "models", "tables", "bundle"}},
         },
         {}}},
+      {"evaluate",
+       {{
+            {"photos", {}},
+            {"surface", {"photos"}},
+            {"buildings", {"surface"}},
+            {"control", {"photos"}},
+            {"metrics", {"photos", "surface", "buildings", "control"}},
+            {"page", {"photos", "surface", "buildings", "control", "metrics"}},
+        },
+        {"evaluate/evaluate_input.h", "evaluate/evaluate_options.h", "evaluate/json_members.h", "evaluate/measured.h"}}},
   };
   return inner;
 }
@@ -302,16 +312,19 @@ TEST(InnerRooms, NamespacesAreNamedAfterThem) {
 
 TEST(InnerRooms, ForbiddenIncludesAreFound) {
   const std::vector<std::pair<std::string, std::string>> violators = {
-      {"prepare/bundle/a.cpp", "prepare/control/fit/fit_control.h"}, {"prepare/poses/seed/a.h", "prepare/georeference/gravity.h"},
-      {"prepare/control/fit/a.cpp", "prepare/prepare_options.h"},    {"prepare/input/masks/a.cpp", "prepare/poses/pairs.h"},
+      {"prepare/bundle/a.cpp", "prepare/control/fit/fit_control.h"},
+      {"prepare/poses/seed/a.h", "prepare/georeference/gravity.h"},
+      {"prepare/control/fit/a.cpp", "prepare/prepare_options.h"},
+      {"prepare/input/masks/a.cpp", "prepare/poses/pairs.h"},
       {"prepare/nowhere/a.cpp", "prepare/input/station.h"},
+      {"evaluate/photos/a.cpp", "evaluate/metrics/metrics.h"},
+      {"evaluate/buildings/a.cpp", "evaluate/control/control_summary.h"},
   };
   for (const auto& [file, header] : violators) EXPECT_EQ(ViolationsIn(file, "#include \"" + header + "\"\n").size(), 1U) << file << ": " << header;
   const std::vector<std::pair<std::string, std::string>> accepted = {
-      {"prepare/a.cpp", "prepare/control/fit/fit_control.h"},
-      {"prepare/poses/a.cpp", "prepare/poses/seed/verdict.h"},
-      {"prepare/georeference/tags/a.cpp", "prepare/input/station.h"},
-      {"prepare/bundle/a.cpp", "core/linear/linear.h"},
+      {"prepare/a.cpp", "prepare/control/fit/fit_control.h"},         {"prepare/poses/a.cpp", "prepare/poses/seed/verdict.h"},
+      {"prepare/georeference/tags/a.cpp", "prepare/input/station.h"}, {"prepare/bundle/a.cpp", "core/linear/linear.h"},
+      {"evaluate/page/a.cpp", "evaluate/metrics/metrics.h"},          {"evaluate/photos/a.cpp", "evaluate/evaluate_input.h"},
   };
   for (const auto& [file, header] : accepted) EXPECT_TRUE(ViolationsIn(file, "#include \"" + header + "\"\n").empty()) << file << ": " << header;
 }
@@ -425,6 +438,10 @@ TEST(Rooms, ForbiddenIncludesAreFound) {
       {"surface/mesh/a.cpp", "#include \"products/map_rays.h\""},
       {"tour/format/a.cpp", "#include \"viewer/data/project_data.h\""},
       {"coordinator/stages/a.cpp", "#include \"viewer/tour_parts.h\""},
+      {"evaluate/photos/a.cpp", "#include \"evaluate/metrics/metrics.h\""},
+      {"evaluate/surface/a.h", "#include \"evaluate/evaluate.h\""},
+      {"evaluate/buildings/a.cpp", "#include \"evaluate/page/page_parts.h\""},
+      {"evaluate/nowhere/a.cpp", "#include \"evaluate/photos/coverage.h\""},
   };
   for (const auto& [file, line] : violators) {
     const std::vector<std::string> found = ViolationsIn(file, "#include <vector>\n" + line + "  // why\nint x;\n");
@@ -454,6 +471,10 @@ TEST(Rooms, AllowedIncludesAreAccepted) {
       {"app/commands/render.cpp", "#include \"products/render_views.h\""},
       {"evaluate/a.cpp", "#include \"partition/block.h\""},
       {"evaluate/a.cpp", "#include \"surface/make_surface.h\""},
+      {"evaluate/evaluate.cpp", "#include \"evaluate/page/report_writer.h\""},
+      {"evaluate/surface/a.cpp", "#include \"evaluate/photos/coverage.h\""},
+      {"evaluate/surface/a.cpp", "#include \"evaluate/measured.h\""},
+      {"bench/a.cpp", "#include \"evaluate/surface/true_surface.h\""},
       {"tour/export/a.cpp", "#include \"products/ray_caster.h\""},
       {"viewer/data/a.cpp", "#include \"tour/format/read_tour.h\""},
       {"core/field/a.cpp", "// #include <mpi.h>"},

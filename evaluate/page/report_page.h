@@ -1,0 +1,70 @@
+// report/index.html: one page that opens offline; style and script inside, pictures as files beside it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/scene/train_report.h"
+#include "core/survey/survey.h"
+#include "evaluate/control/control_pictures.h"
+#include "evaluate/metrics/metrics.h"
+#include "evaluate/metrics/training_curve.h"
+#include "evaluate/page/brightness_report.h"
+#include "evaluate/page/drawn_map.h"
+#include "evaluate/page/input_files.h"
+#include "partition/block.h"
+
+namespace skyquilt::evaluate::buildings {
+struct BuildingsReport;
+}
+
+namespace skyquilt::evaluate::page {
+
+// Pictures of one held-out photo; paths relative to the page, empty when not written.
+struct PhotoImages {
+  std::string photo, render, error, depth;
+  std::string normals, true_normals;  // of rendering and truth
+  std::string mesh;                   // the surface's mesh as the photo would show it
+  int width = 0;                      // pixels
+  int height = 0;
+  double depth_low_m = kNotMeasured;  // range of the depth colours
+  double depth_high_m = kNotMeasured;
+};
+
+struct ReportInput {
+  std::string title;  // name of the project
+  const metrics::Metrics* metrics = nullptr;
+  const survey::Survey* survey = nullptr;
+  const partition::BlockSet* blocks = nullptr;
+  const scene::TrainReport* training = nullptr;           // without fields when it is unknown
+  metrics::Curves curves;                                 // of its fields
+  const BrightnessReport* brightness = nullptr;           // nothing or empty: no such section
+  const buildings::BuildingsReport* buildings = nullptr;  // nothing: no such section
+  InputFiles files;                                       // of the photo folder
+  std::vector<PhotoImages> images;                        // entry i belongs to metrics->photos[i]
+  std::vector<control::MarkPicture> mark_pictures;        // of the survey's control points, in their order
+  std::optional<MapBackground> background;
+  std::string color_ramp;    // picture of the colour map from low to high, relative to the page; empty: no legend
+  double error_high = 0.25;  // display values at the top of the error colours
+};
+
+std::string BuildReportPage(const ReportInput& input);
+
+// Parts of the page, each a <section> or a piece of one.
+std::string SummarySection(const ReportInput& input);  // the key figures of the first screen
+std::string WarningsBanner(const metrics::Metrics& metrics);
+std::string BlockMapSvg(const ReportInput& input);
+std::string PhotoSection(const ReportInput& input);
+std::string SurfaceSection(const ReportInput& input);     // what was made of the scene's surface, and its scores; empty without a surface
+std::string BuildingsSection(const ReportInput& input);   // the found buildings, and their scores; empty when none were searched
+std::string GeoSection(const ReportInput& input);         // how the survey was placed on Earth; see geo_section.h
+std::string ControlSection(const ReportInput& input);     // control and check points, see control_section.h; empty without any
+std::string InputSection(const ReportInput& input);       // what the photo folder had; empty when nothing in it is remarkable
+std::string DetailsSection(const ReportInput& input);     // every figure and its meaning
+std::string ClassTable(const metrics::Metrics& metrics);  // empty without true classes
+std::string MethodSection(const ReportInput& input);
+std::string BrightnessSection(const ReportInput& input);  // empty without brightness
+std::string BlockTable(const ReportInput& input);
+
+}  // namespace skyquilt::evaluate::page

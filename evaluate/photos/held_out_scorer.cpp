@@ -1,0 +1,124 @@
+#include "evaluate/photos/held_out_scorer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "core/base/log.h"
+#include "evaluate/photos/load_held_out_photo.h"
+
+namespace skyquilt::evaluate::photos {
+
+namespace {
+
+SceneArea AreaOf(const scene::SceneInfo& info) {
+  SceneArea area;
+  for (const scene::SceneBlock& block : info.blocks) area.boxes.push_back({block.min_enu, block.max_enu, block.margin_m});
+  if (area.boxes.empty()) area.boxes.push_back({info.min_enu, info.max_enu, 0.0});
+  area.heights = {info.min_enu.z(), info.max_enu.z()};
+  return area;
+}
+
+std::vector<TrainingView> ViewsOf(const EvaluateInput& input) {
+  std::vector<TrainingView> views;
+  for (size_t i = 0; i < input.survey->photos.size(); ++i) {
+    const survey::Photo& photo = input.survey->photos[i];
+    if (photo.is_test) continue;
+    const camera::Camera& camera = input.survey->cameras[static_cast<size_t>(photo.camera)];
+    views.push_back({camera.Resized(input.pixels->Width(i), input.pixels->Height(i)), photo.cam_from_enu, input.pixels->Mask(i)});
+  }
+  return views;
+}
+
+// Normals of rendered rays as an image; NaN where there is none.
+image::ImageF NormalsOf(std::span<const render::RayColor> rendered, const image::Image8& size, const float (render::RayColor::*normal)[3]) {
+  image::ImageF normals(size.width, size.height, 3, std::numeric_limits<float>::quiet_NaN());
+  for (size_t i = 0; i < rendered.size(); ++i) {
+    const float(&n)[3] = rendered[i].*normal;
+    if (n[0] != 0.0F || n[1] != 0.0F || n[2] != 0.0F) std::copy_n(n, 3, normals.data.data() + 3 * i);
+  }
+  return normals;
+}
+
+double LpipsOf(skyquilt::metrics::Lpips& network, const HeldOutPhoto& task, const image::Image8& render) {
+  const image::Image8 used = task.UsedPixels();
+  return network.Distance(image::ToImageF(render), image::ToImageF(task.photo), used.Empty() ? nullptr : &used);
+}
+
+}  // namespace
+
+HeldOutScorer::HeldOutScorer(const EvaluateInput& input)
+    : input_(input), area_(AreaOf(input.scene->info())), training_(ViewsOf(input)), views_(training_) {
+  if (input.options.field_normals && !input.scene->info().density_normals) {
+    base::LogWarning(
+        "The scene's encoding has no normals of the density, so they are not scored. evaluate.field_normals needs \"hash\" or \"voxels\"");
+  }
+  if (!input.options.lpips_network.empty()) lpips_.emplace(input.options.lpips_network);
+}
+
+HeldOutScorer::Recordings HeldOutScorer::RecordingsOf(int photo) const {
+  const brightness::Response& response = input_.scene->info().response;
+  const survey::Photo& taken = input_.survey->photos[static_cast<size_t>(photo)];
+  Recordings recordings;
+  recordings.gain = TaggedGain(taken, response.reference_exposure, input_.options.exif_gain);
+  recordings.tagged = TaggedResponse(response, taken.camera, recordings.gain);
+  recordings.predicted =
+      input_.options.predicted_gain ? PredictedResponse(response, static_cast<size_t>(photo), recordings.tagged) : recordings.tagged;
+  return recordings;
+}
+
+PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads) const {
+  const Recordings recordings = RecordingsOf(photo);
+  const auto start = std::chrono::steady_clock::now();
+  // A field whose encoding has no slope cannot be rendered with normals, not even with those of a head.
+  const bool field_normals = input_.options.field_normals && input_.scene->info().density_normals && !task.true_normals.Empty();
+  const scene::Appearance appearance{.look = scene::Rendition::kRecorded, .normals = field_normals};
+  std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
+  const std::vector<render::RayColor> as_reference = recordings.Differ() ? rendered : std::vector<render::RayColor>();
+  ApplyResponse(task.camera, recordings.predicted, rendered, threads);
+  const double render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  PhotoResult findings = ScorePhoto(task, rendered, views_, area_, threads);
+  if (field_normals) findings.density_normals = NormalsOf(rendered, findings.scored, &render::RayColor::density_normal);
+  if (field_normals && input_.scene->info().normal_head) {
+    findings.head_normals = NormalsOf(rendered, findings.scored, &render::RayColor::predicted_normal);
+  }
+  PhotoScore& score = findings.score;
+  score.photo = photo;
+  score.name = input_.survey->photos[static_cast<size_t>(photo)].name;
+  score.exposure_gain = recordings.gain;
+  for (size_t c = 0; c < 3; ++c) {
+    score.predicted_stops[c] = static_cast<double>(recordings.predicted.log_gain[c] - recordings.tagged.log_gain[c]) / std::numbers::ln2;
+  }
+  score.psnr_exif_gain_db = recordings.Differ() ? PsnrWithResponse(task, recordings.tagged, as_reference, findings.scored, threads) : score.psnr_db;
+  score.render_seconds = render_seconds;
+  return findings;
+}
+
+std::vector<render::RayColor> HeldOutScorer::RenderNormal(const HeldOutPhoto& task, base::ThreadPool& threads) const {
+  scene::Appearance appearance;
+  appearance.log_gain.fill(static_cast<float>(input_.options.normal_stops * std::numbers::ln2));
+  return input_.scene->RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
+}
+
+ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& threads) {
+  ScoredPhoto scored;
+  scored.task = LoadHeldOutPhoto(*input_.survey, *input_.pixels, photo, input_.options.image_width);
+  scored.findings = ScoreRecorded(photo, scored.task, threads);
+  scored.recording = RecordingsOf(photo).predicted;
+  PhotoScore& score = scored.findings.score;
+  if (lpips_) score.lpips = LpipsOf(*lpips_, scored.task, scored.findings.render);
+  if (!scored.findings.true_depth.Empty()) scored.floaters = MeasureFloaterOpacity(*input_.scene, scored.task, scored.findings, threads);
+  const std::filesystem::path normal_photos = input_.options.normal_photos;
+  if (keep_normal || !normal_photos.empty()) scored.normal = RenderNormal(scored.task, threads);
+  if (!normal_photos.empty()) {
+    const NormalScore against = ScoreNormal(normal_photos / score.name, scored.normal, scored.findings.scored);
+    score.psnr_normal_db = against.psnr_db;
+    score.ssim_normal = against.ssim;
+  }
+  return scored;
+}
+
+}  // namespace skyquilt::evaluate::photos

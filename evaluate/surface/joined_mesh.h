@@ -1,0 +1,33 @@
+// All textured tiles of a surface as one mesh in single precision, for tracing rays and measuring distances.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "surface/mesh.h"
+
+namespace skyquilt::evaluate::surface {
+
+struct SurfaceMesh {
+  struct Atlas {
+    std::vector<uint8_t> jpeg;    // RGB; empty: the tile has no texture
+    uint32_t first_triangle = 0;  // triangles of the tile: from here to the first one of the next
+  };
+
+  SurfaceMesh() = default;
+  // Triangles with a corner that is not finite or does not exist are left out.
+  explicit SurfaceMesh(std::vector<skyquilt::surface::TexturedTile> tiles);
+
+  // Index into `atlas`.
+  size_t AtlasOf(uint32_t triangle_index) const;
+
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // survey ENU, metres; positions are relative to it
+  std::vector<Eigen::Vector3f> position;
+  std::vector<Eigen::Vector2f> uv;  // as in surface::TexturedTile; one per position
+  std::vector<std::array<uint32_t, 3>> triangle;
+  std::vector<Atlas> atlas;  // one per tile, in the order given
+};
+
+}  // namespace skyquilt::evaluate::surface

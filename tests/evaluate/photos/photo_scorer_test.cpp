@@ -1,0 +1,152 @@
+#include "evaluate/photos/photo_scorer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/evaluate/photos/nadir_view.h"
+
+namespace skyquilt::evaluate::photos {
+namespace {
+
+constexpr int kScoredWidth = 100, kScoredHeight = 80;
+
+// A camera 100 m above flat ground at height 0: 100 m x 80 m are in the frame, one pixel is one metre.
+struct FlatGround {
+  HeldOutPhoto task;
+  std::vector<render::RayColor> rendered;
+  SceneArea area{{{{-50, -40, -1}, {0, 40, 5}, 5.0}, {{0, -40, -1}, {50, 40, 5}, 5.0}}, {-1.0, 5.0}};
+  base::ThreadPool threads{2};
+
+  FlatGround() {
+    const TrainingView view = NadirView(0, 0, 100);
+    task.camera = view.camera;
+    task.cam_from_enu = view.cam_from_enu;
+    task.photo = image::Image8(kScoredWidth, kScoredHeight, 3, 100);
+    rendered.resize(static_cast<size_t>(kScoredWidth) * kScoredHeight);
+    for (int y = 0; y < kScoredHeight; ++y) {
+      for (int x = 0; x < kScoredWidth; ++x) {
+        render::RayColor& ray = rendered[static_cast<size_t>(y) * kScoredWidth + static_cast<size_t>(x)];
+        // The western half is rendered 10/255 too bright, the eastern 20/255.
+        for (float& c : ray.rgb_srgb) c = (x < 50 ? 110.0F : 120.0F) / 255.0F;
+        ray.opacity = 1.0F;
+        ray.depth_median = static_cast<float>(100.0 / task.camera.RayFromImg({x + 0.5, y + 0.5}).z());
+        ray.depth = ray.depth_median;
+      }
+    }
+  }
+  static TrainingViews TwoEverywhere() { return TrainingViews({NadirView(0, 0, 120), NadirView(1, 0, 120)}); }
+};
+
+double Psnr(double difference) {
+  return -20.0 * std::log10(difference / 255.0);
+}
+
+TEST(ScorePhoto, AllPixelsCoveredGiveTheFullFrameScore) {
+  FlatGround flat;
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_EQ(findings.score.used_pixels, kScoredWidth * kScoredHeight);
+  EXPECT_EQ(findings.score.covered_pixels, kScoredWidth * kScoredHeight);
+  EXPECT_DOUBLE_EQ(findings.score.Coverage(), 1.0);
+  EXPECT_NEAR(findings.score.psnr_db, Psnr(std::sqrt(250.0)), 1e-3);
+  EXPECT_NEAR(findings.score.psnr_full_db, findings.score.psnr_db, 1e-9);
+  EXPECT_NEAR(findings.score.ssim, findings.score.ssim_full, 1e-6);
+  EXPECT_GT(findings.score.flip, 0.0);
+  EXPECT_EQ(findings.score.flip, findings.score.flip_full);
+}
+
+TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
+  FlatGround flat;
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  ASSERT_EQ(findings.per_block.size(), 2U);
+  EXPECT_EQ(PixelsOf(findings.per_block[0]), 50 * kScoredHeight);
+  EXPECT_EQ(PixelsOf(findings.per_block[1]), 50 * kScoredHeight);
+  EXPECT_NEAR(skyquilt::metrics::PsnrOf(findings.per_block[0]), Psnr(10.0), 1e-3);
+  EXPECT_NEAR(skyquilt::metrics::PsnrOf(findings.per_block[1]), Psnr(20.0), 1e-3);
+  EXPECT_EQ(PixelsOf(findings.seams.AllSeam()), 10 * kScoredHeight);                 // 5 m on either side
+  EXPECT_EQ(PixelsOf(findings.seams.AllInterior()), 2 * 40 * (kScoredHeight - 10));  // without seam and rim
+}
+
+TEST(ScorePhoto, PixelsSeenByOneViewOnlyAreNotCovered) {
+  FlatGround flat;
+  // The second view is moved 50 m west: its frame ends at x = 0 + 10 (60 m half width at 120 m height).
+  const TrainingViews views({NadirView(0, 0, 120), NadirView(-50, 0, 120)});
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
+  EXPECT_EQ(findings.score.covered_pixels, 60 * kScoredHeight);
+  EXPECT_EQ(findings.scored.data[0], 1);
+  EXPECT_EQ(findings.scored.data[kScoredWidth - 1], 0);
+  EXPECT_GT(findings.score.psnr_db, findings.score.psnr_full_db);  // the worse half is partly uncovered
+}
+
+TEST(ScorePhoto, MaskedPixelsCountNowhere) {
+  FlatGround flat;
+  flat.task.mask.assign(static_cast<size_t>(kScoredWidth) * kScoredHeight, 1);
+  for (int y = 0; y < kScoredHeight; ++y) {
+    for (int x = 50; x < kScoredWidth; ++x) flat.task.mask[static_cast<size_t>(y) * kScoredWidth + static_cast<size_t>(x)] = 0;
+  }
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_EQ(findings.score.used_pixels, 50 * kScoredHeight);
+  EXPECT_NEAR(findings.score.psnr_full_db, Psnr(10.0), 1e-3);
+  EXPECT_EQ(PixelsOf(findings.per_block[1]), 0);
+}
+
+TEST(ScorePhoto, HolesOverPhotographedGroundStillCount) {
+  FlatGround flat;
+  for (render::RayColor& ray : flat.rendered) {
+    ray = render::RayColor{};
+    ray.depth = ray.depth_median = std::numeric_limits<float>::quiet_NaN();
+  }
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_GT(findings.score.Coverage(), 0.9);
+  EXPECT_NEAR(findings.score.psnr_full_db, Psnr(100.0), 1e-3);
+}
+
+TEST(ScorePhoto, DepthIsComparedAlongTheOpticalAxis) {
+  FlatGround flat;
+  flat.task.true_depth = image::ImageF(2 * kScoredWidth, 2 * kScoredHeight, 1, 100.5F);  // of twice the size; the render is half a metre too near
+  *flat.task.true_depth.At(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_NEAR(findings.score.depth_rmse_m, 0.5, 1e-4);
+  EXPECT_NEAR(findings.score.depth_median_abs_m, 0.5, 1e-3);
+}
+
+TEST(ScorePhoto, NormalsAndClassesComeAtTheScoredSize) {
+  FlatGround flat;
+  EXPECT_TRUE(ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads).normals.Empty());
+  flat.task.true_normals = image::ImageF(2 * kScoredWidth, 2 * kScoredHeight, 3, 0.0F);
+  for (size_t i = 2; i < flat.task.true_normals.data.size(); i += 3) flat.task.true_normals.data[i] = 1.0F;
+  flat.task.true_class = image::Image8(2 * kScoredWidth, 2 * kScoredHeight, 1, 3);
+  for (int y = 0; y < 2 * kScoredHeight; ++y) {
+    for (int x = 20; x < 40; ++x) *flat.task.true_class.At(x, y) = 5;
+  }
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  ASSERT_EQ(findings.true_class.width, kScoredWidth);
+  ASSERT_EQ(findings.true_class.height, kScoredHeight);
+  for (int x = 0; x < kScoredWidth; ++x) EXPECT_EQ(*findings.true_class.At(x, 7), x >= 10 && x < 20 ? 5 : 3) << x;
+  ASSERT_EQ(findings.true_normals.data.size(), findings.normals.data.size());
+  EXPECT_EQ(findings.true_normals.At(kScoredWidth - 1, kScoredHeight - 1)[2], 1.0F);
+  EXPECT_NEAR(findings.normals.At(30, 30)[2], 1.0F, 1e-5F);  // of the rendered level ground
+}
+
+TEST(ScorePhoto, SameResultForAnyNumberOfThreads) {
+  FlatGround flat;
+  base::ThreadPool one(1);
+  const TrainingViews views = FlatGround::TwoEverywhere();
+  const PhotoResult a = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
+  const PhotoResult b = ScorePhoto(flat.task, flat.rendered, views, flat.area, one);
+  EXPECT_EQ(a.score.psnr_db, b.score.psnr_db);
+  EXPECT_EQ(a.seams.AllInterior().sum, b.seams.AllInterior().sum);
+  EXPECT_EQ(a.score.flip, b.score.flip);
+  EXPECT_EQ(a.scored.data, b.scored.data);
+}
+
+TEST(ScorePhoto, NonFiniteRenderedColoursAreBlackNotNan) {
+  FlatGround flat;
+  flat.rendered[5].rgb_srgb[1] = std::numeric_limits<float>::quiet_NaN();
+  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  EXPECT_TRUE(std::isfinite(findings.score.psnr_db));
+}
+
+}  // namespace
+}  // namespace skyquilt::evaluate::photos

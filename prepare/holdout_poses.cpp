@@ -26,11 +26,9 @@ namespace {
 constexpr double kFocalSigma = 0.01;  // relative
 
 control::ControlBundle BundleWithoutControl(survey::ColmapModel& model, const survey::ColmapObservations& observations) {
-  const std::vector<input::Station> no_stations;
-  const std::vector<size_t> no_images;
+  const std::vector<input::PreparedPhoto> no_marked;
   const control::ControlPoints no_points;
-  return control::MakeControlBundle(
-      {.model = model, .observations = observations, .stations = no_stations, .image_of_station = no_images, .control = no_points});
+  return control::MakeControlBundle({.model = model, .observations = observations, .photos = no_marked, .control = no_points});
 }
 
 // Where photos are holds the frame of an adjustment without tags, so loosely (the size of the survey) that it bends nothing.
@@ -65,22 +63,24 @@ std::string WhyNot(const survey::ColmapModel& given, const survey::ColmapModel& 
 }
 
 // By the order of names where times are not known.
-size_t NearestInTime(const std::vector<input::Station>& stations, size_t station, const std::vector<size_t>& among) {
+size_t NearestInTime(const std::vector<input::PreparedPhoto>& photos, size_t photo, const std::vector<size_t>& among) {
   const auto distance = [&](size_t i) {
-    const double in_list = std::abs(static_cast<double>(i) - static_cast<double>(station));
-    const bool timed = stations[station].time_s && stations[i].time_s;
-    return std::pair(timed ? std::abs(*stations[i].time_s - *stations[station].time_s) : std::numeric_limits<double>::infinity(), in_list);
+    const double in_list = std::abs(static_cast<double>(i) - static_cast<double>(photo));
+    const bool timed = photos[photo].file.tags.capture_time_s && photos[i].file.tags.capture_time_s;
+    return std::pair(
+        timed ? std::abs(*photos[i].file.tags.capture_time_s - *photos[photo].file.tags.capture_time_s) : std::numeric_limits<double>::infinity(),
+        in_list);
   };
   return *std::min_element(among.begin(), among.end(), [&](size_t a, size_t b) { return distance(a) < distance(b); });
 }
 
 // The camera less its tag, corrected as another one's.
-Eigen::Vector3d ResidualAs(const input::Station& station, size_t other, const georeference::Georeference& georeference) {
+Eigen::Vector3d ResidualAs(const input::PreparedPhoto& photo, size_t other, const georeference::Georeference& georeference) {
   const geo::EnuFrame frame(georeference.origin);
-  geo::Geodetic tag = *station.gps;
+  geo::Geodetic tag = *photo.gps;
   const bool has_height = std::isfinite(tag.height_m) && std::isfinite(georeference.residual_m[other].z());
   if (!has_height) tag.height_m = georeference.origin.height_m;
-  Eigen::Vector3d residual = georeference.enu_from_model * station.cam_from_model.OriginInSource() - frame.EnuFromGeodetic(tag);
+  Eigen::Vector3d residual = georeference.enu_from_model * photo.cam_from_model.OriginInSource() - frame.EnuFromGeodetic(tag);
   residual -= georeference.correction_m[other];
   if (!has_height) residual.z() = std::numeric_limits<double>::quiet_NaN();
   return residual;
@@ -160,10 +160,9 @@ std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::Co
   return lost;
 }
 
-void AddResected(const std::vector<input::Station>& stations, const std::vector<char>& resected, georeference::Georeference& georeference) {
-  SKYQUILT_CHECK(stations.size() == resected.size(), "one flag per station");
+void AddResected(const std::vector<input::PreparedPhoto>& photos, const std::set<std::string>& resected, georeference::Georeference& georeference) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const size_t n = stations.size();
+  const size_t n = photos.size();
   georeference::Georeference all = georeference;
   all.flight.assign(n, 0);
   all.correction_m.assign(n, Eigen::Vector3d::Zero());
@@ -171,23 +170,23 @@ void AddResected(const std::vector<input::Station>& stations, const std::vector<
   all.inlier.assign(n, 0);
   std::vector<size_t> others, tagged;
   for (size_t i = 0; i < n; ++i) {
-    if (resected[i] != 0) continue;
+    if (resected.contains(photos[i].file.name)) continue;
     const size_t k = others.size();
-    SKYQUILT_CHECK(k < georeference.flight.size(), "one entry per station with a part in the geo-reference");
+    SKYQUILT_CHECK(k < georeference.flight.size(), "one entry per photo with a part in the geo-reference");
     all.flight[i] = georeference.flight[k];
     all.correction_m[i] = georeference.correction_m[k];
     all.residual_m[i] = georeference.residual_m[k];
     all.inlier[i] = georeference.inlier[k];
     others.push_back(i);
-    if (stations[i].gps) tagged.push_back(i);
+    if (photos[i].gps) tagged.push_back(i);
   }
   for (size_t i = 0; i < n; ++i) {
-    if (resected[i] == 0) continue;
-    all.flight[i] = all.flight[NearestInTime(stations, i, others)];
-    if (!georeference.ok || !stations[i].gps || tagged.empty()) continue;
-    const size_t like = NearestInTime(stations, i, tagged);
+    if (!resected.contains(photos[i].file.name)) continue;
+    all.flight[i] = all.flight[NearestInTime(photos, i, others)];
+    if (!georeference.ok || !photos[i].gps || tagged.empty()) continue;
+    const size_t like = NearestInTime(photos, i, tagged);
     all.correction_m[i] = all.correction_m[like];
-    all.residual_m[i] = ResidualAs(stations[i], like, all);
+    all.residual_m[i] = ResidualAs(photos[i], like, all);
   }
   georeference = std::move(all);
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -13,7 +14,7 @@
 #include "core/base/thread_pool.h"
 #include "core/survey/colmap_model.h"
 #include "prepare/georeference/georeference.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare {
 
@@ -36,8 +37,8 @@ std::optional<WithheldPhotos> WithholdPhotos(const std::unordered_set<uint32_t>&
 // (bundle/resect.h) such points stay out; returns their names.
 std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::ColmapModel& model);
 
-// Adds stations that had no part in a geo-reference to its lists, which afterwards are in the order of `stations`. `resected`: per station, 1 for
-// those. Their tags count as not agreeing; each is compared with its photo as that of the photo nearest to it in time was.
-void AddResected(const std::vector<input::Station>& stations, const std::vector<char>& resected, georeference::Georeference& georeference);
+// Adds photos that had no part in a geo-reference to its lists, which afterwards are in the order of `photos`. `resected`: names that include
+// theirs and of the others none. Their tags count as not agreeing; each is compared with its photo as that of the photo nearest to it in time was.
+void AddResected(const std::vector<input::PreparedPhoto>& photos, const std::set<std::string>& resected, georeference::Georeference& georeference);
 
 }  // namespace skyquilt::prepare

@@ -25,18 +25,18 @@ void RequireColmap(const models::InputModel& model, const std::filesystem::path&
   throw base::InputError(path, "has poses but no sparse points, which give the heights above ground", fix);
 }
 
-void PlaceByModel(const models::ModelPlace& place, std::vector<input::Station>& stations) {
-  const auto tagged = std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value(); });
+void PlaceByModel(const models::ModelPlace& place, std::vector<input::PreparedPhoto>& photos) {
+  const auto tagged = std::count_if(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.gps.has_value(); });
   if (tagged >= georeference::kMinAgreeing) return;
-  base::LogInfo("{} of {} photos have GPS tags, so the positions of the model are used ({}); their accuracy is not known", tagged, stations.size(),
+  base::LogInfo("{} of {} photos have GPS tags, so the positions of the model are used ({}); their accuracy is not known", tagged, photos.size(),
                 place.source);
   const geo::EnuFrame frame(place.origin);
-  const input::Station untagged;
-  for (input::Station& station : stations) {
-    station.gps = frame.GeodeticFromEnu(place.enu_from_model * station.cam_from_model.OriginInSource());
-    station.rtk = false;
-    station.horizontal_sigma_m = untagged.horizontal_sigma_m;
-    station.vertical_sigma_m = untagged.vertical_sigma_m;
+  const input::PreparedPhoto untagged;
+  for (input::PreparedPhoto& photo : photos) {
+    photo.gps = frame.GeodeticFromEnu(place.enu_from_model * photo.cam_from_model.OriginInSource());
+    photo.rtk = false;
+    photo.horizontal_sigma_m = untagged.horizontal_sigma_m;
+    photo.vertical_sigma_m = untagged.vertical_sigma_m;
   }
 }
 

@@ -55,27 +55,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kInputTable = "input.csv";
 
-std::vector<input::Station> MakeStations(const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files) {
-  std::vector<input::Station> stations;
-  stations.reserve(registered.size());
-  for (const input::Registered& entry : registered) {
-    stations.push_back(input::MakeStation(files[entry.file].name, entry.image->cam_from_world, files[entry.file].tags));
-  }
-  return stations;
-}
-
-// Per station, index into the model's images.
-std::vector<size_t> ImagesOf(const std::vector<input::Registered>& registered, const survey::ColmapModel& model) {
-  std::vector<size_t> images;
-  images.reserve(registered.size());
-  for (const input::Registered& entry : registered) images.push_back(static_cast<size_t>(entry.image - model.images.data()));
-  return images;
-}
-
 // Index into the survey's photos by COLMAP's image id.
-std::unordered_map<uint32_t, int32_t> PhotoOfImage(const std::vector<input::Registered>& registered) {
+std::unordered_map<uint32_t, int32_t> PhotoOfImage(const std::vector<input::PreparedPhoto>& photos, const survey::ColmapModel& model) {
   std::unordered_map<uint32_t, int32_t> photo_of_image;
-  for (size_t i = 0; i < registered.size(); ++i) photo_of_image.emplace(registered[i].image->id, static_cast<int32_t>(i));
+  for (size_t i = 0; i < photos.size(); ++i) photo_of_image.emplace(model.images[photos[i].image].id, static_cast<int32_t>(i));
   return photo_of_image;
 }
 
@@ -124,23 +107,23 @@ void WarnOfPosesLeftOut(const survey::ColmapModel& model, const std::vector<inpu
 }
 
 // Puts poses, tags and cameras into the survey. Cameras without photos are left out.
-void FillPhotos(const survey::ColmapModel& model, const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files,
-                const std::vector<std::string>& masks, const georeference::Georeference& georeference, survey::Survey& survey) {
+void FillPhotos(const survey::ColmapModel& model, const std::vector<input::PreparedPhoto>& photos, const georeference::Georeference& georeference,
+                survey::Survey& survey) {
   std::map<uint32_t, int> camera_index;
   std::optional<double> first_time_s;
-  for (const input::Registered& entry : registered) {
-    if (const auto time_s = files[entry.file].tags.capture_time_s) first_time_s = std::min(first_time_s.value_or(*time_s), *time_s);
+  for (const input::PreparedPhoto& prepared : photos) {
+    if (const auto time_s = prepared.file.tags.capture_time_s) first_time_s = std::min(first_time_s.value_or(*time_s), *time_s);
   }
-  for (size_t i = 0; i < registered.size(); ++i) {
-    const survey::ColmapImage& image = *registered[i].image;
-    const input::PhotoFile& file = files[registered[i].file];
-    const auto [found, is_new] = camera_index.emplace(image.camera_id, static_cast<int>(survey.cameras.size()));
-    if (is_new) survey.cameras.push_back(model.cameras.at(image.camera_id));
+  for (size_t i = 0; i < photos.size(); ++i) {
+    const uint32_t camera_id = model.images[photos[i].image].camera_id;
+    const input::PhotoFile& file = photos[i].file;
+    const auto [found, is_new] = camera_index.emplace(camera_id, static_cast<int>(survey.cameras.size()));
+    if (is_new) survey.cameras.push_back(model.cameras.at(camera_id));
     survey::Photo photo;
     photo.name = file.name;
-    photo.mask = masks[registered[i].file];
+    photo.mask = file.mask;
     photo.camera = found->second;
-    photo.cam_from_enu = geo::TransformCameraWorld(image.cam_from_world, georeference.enu_from_model);
+    photo.cam_from_enu = geo::TransformCameraWorld(photos[i].cam_from_model, georeference.enu_from_model);
     photo.cam_from_enu.rotation.normalize();
     photo.gps = file.tags.gps;
     photo.relative_altitude_m = file.tags.relative_altitude_m;
@@ -156,10 +139,10 @@ void FillPhotos(const survey::ColmapModel& model, const std::vector<input::Regis
 }
 
 // Tags of the photos that place the survey. Too few of them do not: then the model's own positions do, see PlaceByModel.
-std::vector<survey::PhotoTags> PlacingTags(const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files) {
+std::vector<survey::PhotoTags> PlacingTags(const std::vector<input::PreparedPhoto>& photos) {
   std::vector<survey::PhotoTags> tags;
-  for (const input::Registered& entry : registered) {
-    if (files[entry.file].tags.gps) tags.push_back(files[entry.file].tags);
+  for (const input::PreparedPhoto& photo : photos) {
+    if (photo.file.tags.gps) tags.push_back(photo.file.tags);
   }
   if (tags.size() < georeference::kMinAgreeing) tags.clear();
   return tags;
@@ -187,16 +170,16 @@ double MeasureK1Sigma(const survey::ColmapModel& model, const fs::path& model_fo
 
 // Needs the survey's photos, place and heights above ground. `has_observations`: in COLMAP's files, of features in photos, not a simulation's
 // projections.
-void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<input::Registered>& registered,
-                   const std::vector<input::PhotoFile>& files, bool has_observations, survey::Survey& survey) {
+void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<input::PreparedPhoto>& photos,
+                   bool has_observations, survey::Survey& survey) {
   std::vector<const survey::PhotoTags*> tags;
-  tags.reserve(registered.size());
-  for (const input::Registered& entry : registered) tags.push_back(&files[entry.file].tags);
+  tags.reserve(photos.size());
+  for (const input::PreparedPhoto& photo : photos) tags.push_back(&photo.file.tags);
   survey.checks = georeference::CheckFlight(survey, tags);
   const auto main = std::find_if(survey.photos.begin(), survey.photos.end(),
                                  [camera = georeference::MainCamera(survey)](const survey::Photo& photo) { return photo.camera == camera; });
   if (has_observations && main != survey.photos.end()) {
-    const uint32_t camera_id = registered[static_cast<size_t>(main - survey.photos.begin())].image->camera_id;
+    const uint32_t camera_id = model.images[photos[static_cast<size_t>(main - survey.photos.begin())].image].camera_id;
     survey.checks.k1_sigma = MeasureK1Sigma(model, model_folder, camera_id);
   }
   base::LogInfo(georeference::DescribeChecks(survey.checks));
@@ -204,11 +187,11 @@ void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folde
 }
 
 // Focal lengths that the tags say, by the camera ids of the model.
-std::map<uint32_t, double> TaggedFocals(const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files) {
+std::map<uint32_t, double> TaggedFocals(const std::vector<input::PreparedPhoto>& photos, const survey::ColmapModel& model) {
   std::map<uint32_t, std::vector<double>> tagged_px;
-  for (const input::Registered& entry : registered) {
-    const input::PhotoFile& file = files[entry.file];
-    if (const auto focal_px = poses::TaggedFocalPx(file.tags, file.width, file.height)) tagged_px[entry.image->camera_id].push_back(*focal_px);
+  for (const input::PreparedPhoto& photo : photos) {
+    const auto focal_px = poses::TaggedFocalPx(photo.file.tags, photo.file.width, photo.file.height);
+    if (focal_px) tagged_px[model.images[photo.image].camera_id].push_back(*focal_px);
   }
   std::map<uint32_t, double> median_px;
   for (auto& [id, values] : tagged_px) median_px.emplace(id, base::Median(std::move(values)));
@@ -216,24 +199,24 @@ std::map<uint32_t, double> TaggedFocals(const std::vector<input::Registered>& re
 }
 
 // Needs the survey's photos, place and heights above ground.
-void CheckAgainstTags(const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files,
-                      const georeference::GimbalVerdict& gimbal, bool own_poses, survey::Survey& survey) {
+void CheckAgainstTags(const std::vector<input::PreparedPhoto>& photos, const georeference::GimbalVerdict& gimbal, bool own_poses,
+                      survey::Survey& survey) {
   georeference::CheckedResult result{
       .photos = {}, .georeferenced = survey.georeferenced, .own_poses = own_poses, .by_control = survey.control.placed, .gimbal = gimbal};
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
-    const input::PhotoFile& file = files[registered[i].file];
+    const survey::PhotoTags& tags = photos[i].file.tags;
     const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
     result.photos.push_back({.cam_from_enu = photo.cam_from_enu.rotation,
                              .camera = photo.camera,
                              .focal_px = camera.FocalX(),
                              .longer_side_px = static_cast<double>(std::max(camera.width, camera.height)),
                              .agl_m = photo.agl_m,
-                             .tagged_focal_px = poses::TaggedFocalPx(file.tags, camera.width, camera.height),
+                             .tagged_focal_px = poses::TaggedFocalPx(tags, camera.width, camera.height),
                              .relative_altitude_m = photo.relative_altitude_m,
-                             .gimbal_yaw_deg = file.tags.gimbal_yaw_deg,
-                             .gimbal_pitch_deg = file.tags.gimbal_pitch_deg,
-                             .gimbal_roll_deg = file.tags.gimbal_roll_deg});
+                             .gimbal_yaw_deg = tags.gimbal_yaw_deg,
+                             .gimbal_pitch_deg = tags.gimbal_pitch_deg,
+                             .gimbal_roll_deg = tags.gimbal_roll_deg});
   }
   georeference::ApplyChecks(georeference::CheckResult(result), survey);
 }
@@ -249,15 +232,16 @@ void LogDirections(const survey::DominantDirections& directions) {
 
 // For a model without any.
 std::vector<survey::ColmapPoint> PointsFromPoses(const poses::ColmapJob& job, const survey::ColmapModel& model,
-                                                 const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files,
-                                                 const poses::PoseOptions& options, base::ThreadPool& threads, poses::RemoteTasks* ranks) {
+                                                 const std::vector<input::PreparedPhoto>& prepared, const poses::PoseOptions& options,
+                                                 base::ThreadPool& threads, poses::RemoteTasks* ranks) {
   survey::ColmapModel poses;
   std::vector<input::PhotoFile> photos;
-  for (const input::Registered& entry : registered) {
-    photos.push_back(files[entry.file]);
-    poses.images.push_back(*entry.image);
-    poses.images.back().name = photos.back().name;
-    poses.cameras.emplace(entry.image->camera_id, model.cameras.at(entry.image->camera_id));
+  for (const input::PreparedPhoto& photo : prepared) {
+    const survey::ColmapImage& image = model.images[photo.image];
+    photos.push_back(photo.file);
+    poses.images.push_back(image);
+    poses.images.back().name = photo.file.name;
+    poses.cameras.emplace(image.camera_id, model.cameras.at(image.camera_id));
   }
   return poses::TriangulatePoints(job, photos, poses, options, threads, ranks);
 }
@@ -265,13 +249,12 @@ std::vector<survey::ColmapPoint> PointsFromPoses(const poses::ColmapJob& job, co
 // Names of the held-out photos, those of photos with a pose. Chosen while all of these still have it, so that the same ones are held out whatever
 // prepare.holdout_poses does. `names`: of all photos.
 std::set<std::string> ChooseHeldOut(const PrepareOptions& options, const models::InputModel& model, const fs::path& model_path,
-                                    const std::vector<input::Registered>& registered, const std::vector<input::PhotoFile>& files,
-                                    const std::vector<std::string>& names) {
+                                    const std::vector<input::PreparedPhoto>& photos, const std::vector<std::string>& names) {
   survey::Survey survey;
   std::set<std::string> with_pose;
-  for (const input::Registered& entry : registered) {
-    survey.photos.emplace_back().name = files[entry.file].name;
-    with_pose.insert(files[entry.file].name);
+  for (const input::PreparedPhoto& photo : photos) {
+    survey.photos.emplace_back().name = photo.file.name;
+    with_pose.insert(photo.file.name);
   }
   std::set_difference(names.begin(), names.end(), with_pose.begin(), with_pose.end(), std::back_inserter(survey.unregistered));
   MarkHoldout(ParseHoldout(options.holdout), survey);
@@ -284,12 +267,11 @@ std::set<std::string> ChooseHeldOut(const PrepareOptions& options, const models:
 }
 
 // Takes the held-out photos out of the model. Nothing when their poses stay as the model has them; the log says why.
-std::optional<WithheldPhotos> Withhold(const std::set<std::string>& held_out, const std::vector<input::Registered>& registered,
-                                       const std::vector<input::PhotoFile>& files, const fs::path& model_folder, bool has_observations,
-                                       survey::ColmapModel& model, base::ThreadPool& threads) {
+std::optional<WithheldPhotos> Withhold(const std::set<std::string>& held_out, const std::vector<input::PreparedPhoto>& photos,
+                                       const fs::path& model_folder, bool has_observations, survey::ColmapModel& model, base::ThreadPool& threads) {
   std::unordered_set<uint32_t> images;
-  for (const input::Registered& entry : registered) {
-    if (held_out.contains(files[entry.file].name)) images.insert(entry.image->id);
+  for (const input::PreparedPhoto& photo : photos) {
+    if (held_out.contains(photo.file.name)) images.insert(model.images[photo.image].id);
   }
   std::optional<WithheldPhotos> withheld;
   std::string reason = "the model has no observations of points in photos, or its poses are exact";
@@ -304,9 +286,9 @@ std::optional<WithheldPhotos> Withhold(const std::set<std::string>& held_out, co
 
 // Puts withheld photos back into the model and the geo-reference. Returns all photos of the model in name order. Throws base::UsageError when none
 // of them can be placed.
-std::vector<input::Registered> PutBack(const WithheldPhotos& withheld, const std::set<std::string>& held_out, const input::FileOfImage& file_of_image,
-                                       const std::vector<input::PhotoFile>& files, survey::ColmapModel& model,
-                                       georeference::Georeference& georeference) {
+std::vector<input::PreparedPhoto> PutBack(const WithheldPhotos& withheld, const std::set<std::string>& held_out,
+                                          const input::FileOfImage& file_of_image, const std::vector<input::PhotoFile>& files,
+                                          survey::ColmapModel& model, georeference::Georeference& georeference) {
   const std::vector<std::string> lost = ResectWithheld(withheld, model);
   if (lost.size() == withheld.images.size()) {
     throw base::UsageError(
@@ -319,11 +301,9 @@ std::vector<input::Registered> PutBack(const WithheldPhotos& withheld, const std
     base::LogWarning("{} held-out photos get no pose, because they see fewer than {} points of the others: {}", lost.size(),
                      bundle::kLeastObservations, input::FewNames(lost));
   }
-  std::vector<input::Registered> registered = input::RegisteredPhotos(model, file_of_image);
-  std::vector<char> resected;
-  for (const input::Registered& entry : registered) resected.push_back(held_out.contains(files[entry.file].name) ? 1 : 0);
-  AddResected(MakeStations(registered, files), resected, georeference);
-  return registered;
+  std::vector<input::PreparedPhoto> photos = input::PreparePhotos(model, file_of_image, files);
+  AddResected(photos, held_out, georeference);
+  return photos;
 }
 
 }  // namespace
@@ -343,7 +323,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   georeference::LogUnfilledTags(options.flight_gap_s, photos.usable);
   georeference::TurnPitchesThatLookUp(photos.usable);
   const input::PhotoMasks masks =
-      input::FindMasks(folders.photo_root, folders.masks, photos.usable, fs::absolute(input.out_folder) / "masks", files, threads);
+      input::FindMasks(folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "masks", photos.usable, files, threads);
   NoteReadPhotos(photos, files);
   input::WriteInputTable(files, input.out_folder / kInputTable);
   // Faults of these files are told before the long search for poses.
@@ -365,41 +345,38 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
                                        fs::absolute(input.out_folder) / "scaled_model", input_model.sfm);
   const survey::ColmapModel& model = input_model.sfm;
   const input::FileOfImage file_of_image = input::MatchPhotos(model, photos.usable, folders.model, folders.photo_root);
-  std::vector<input::Registered> registered = input::RegisteredPhotos(model, file_of_image);
+  std::vector<input::PreparedPhoto> prepared = input::PreparePhotos(model, file_of_image, photos.usable);
   if (LacksPoints(input_model)) {
     RequireColmap(input_model, folders.model, options.colmap);
     const poses::ColmapJob job{picture_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
-    input_model.sfm.points = PointsFromPoses(job, model, registered, photos.usable, PoseOptionsOf(options), threads, ranks);
+    input_model.sfm.points = PointsFromPoses(job, model, prepared, PoseOptionsOf(options), threads, ranks);
   }
   const auto poses_known = std::chrono::steady_clock::now();
-  const std::set<std::string> held_out = ChooseHeldOut(options, input_model, folders.model, registered, photos.usable, names);
+  const std::set<std::string> held_out = ChooseHeldOut(options, input_model, folders.model, prepared, names);
   std::optional<WithheldPhotos> withheld;
   if (options.holdout_poses == "resected" && !held_out.empty()) {
-    withheld = Withhold(held_out, registered, photos.usable, folders.model, has_observations, input_model.sfm, threads);
-    registered = input::RegisteredPhotos(model, file_of_image);
+    withheld = Withhold(held_out, prepared, folders.model, has_observations, input_model.sfm, threads);
+    prepared = input::PreparePhotos(model, file_of_image, photos.usable);
   }
 
-  std::vector<input::Station> stations = MakeStations(registered, photos.usable);
-  if (input_model.place) PlaceByModel(*input_model.place, stations);
+  if (input_model.place) PlaceByModel(*input_model.place, prepared);
   std::vector<Eigen::Vector3d> points;
   points.reserve(model.points.size());
   for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
   const georeference::PlaceOptions place_options = PlaceOptionsOf(options);
-  georeference::Georeference georeference = folders.exact_origin ? georeference::KeepExactFrame(stations, *folders.exact_origin, place_options)
-                                                                 : georeference::PlaceOnEarth(stations, points, place_options);
-  const std::vector<size_t> image_of_station = ImagesOf(registered, model);
+  georeference::Georeference georeference = folders.exact_origin ? georeference::KeepExactFrame(prepared, *folders.exact_origin, place_options)
+                                                                 : georeference::PlaceOnEarth(prepared, points, place_options);
   // Control points say more of the shape than tags; check points are compared with the final one.
   const bool any_control =
       std::any_of(control_points.points.begin(), control_points.points.end(), [](const control::ControlPoint& p) { return !p.check; });
   if (has_observations && !any_control) {
-    georeference::ShapeByTags({place_options, image_of_station, folders.model, TaggedFocals(registered, photos.usable)}, input_model.sfm, stations,
-                              georeference, threads);
+    georeference::ShapeByTags({place_options, folders.model, TaggedFocals(prepared, model)}, input_model.sfm, prepared, georeference, threads);
   }
-  survey::ControlFit control = georeference::PlaceByControl(
-      {place_options, control_points, image_of_station, folders.model, has_observations, folders.exact_origin.has_value()}, input_model.sfm, stations,
-      georeference, threads);
-  const std::vector<survey::PhotoTags> placing_tags = PlacingTags(registered, photos.usable);
-  if (withheld) registered = PutBack(*withheld, held_out, file_of_image, photos.usable, input_model.sfm, georeference);
+  survey::ControlFit control =
+      georeference::PlaceByControl({place_options, control_points, folders.model, has_observations, folders.exact_origin.has_value()},
+                                   input_model.sfm, prepared, georeference, threads);
+  const std::vector<survey::PhotoTags> placing_tags = PlacingTags(prepared);
+  if (withheld) prepared = PutBack(*withheld, held_out, file_of_image, photos.usable, input_model.sfm, georeference);
 
   survey::Survey survey;
   survey.origin = georeference.origin;
@@ -410,7 +387,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   survey.problems = georeference.problems;
   survey.truth = folders.truth;
   survey.height_reference = survey::HeightReferenceOf(survey, placing_tags);
-  FillPhotos(model, registered, photos.usable, masks.files, georeference, survey);
+  FillPhotos(model, prepared, georeference, survey);
   // Before the points: those that only held-out photos observed are not used.
   for (survey::Photo& photo : survey.photos) photo.is_test = held_out.contains(photo.name);
   survey.resected_holdout = withheld.has_value();
@@ -419,12 +396,12 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   for (const std::string& name : names) {
     if (!with_pose.contains(name)) survey.unregistered.push_back(name);
   }
-  FillPoints(model, georeference.enu_from_model, PhotoOfImage(registered), options.keep_points, survey);
+  FillPoints(model, georeference.enu_from_model, PhotoOfImage(prepared, model), options.keep_points, survey);
   georeference::MeasureAgl(survey, threads);
   // An exact frame is the truth, whatever the tags say.
-  if (!folders.exact_origin) CheckAgainstTags(registered, photos.usable, georeference.gimbal, own_poses, survey);
+  if (!folders.exact_origin) CheckAgainstTags(prepared, georeference.gimbal, own_poses, survey);
   if (on_placed) on_placed(survey, poses_known);
-  CheckFlightOf(model, folders.model, registered, photos.usable, has_observations, survey);
+  CheckFlightOf(model, folders.model, prepared, has_observations, survey);
   base::ThrowIfCancelled();
   const georeference::FoundLines lines = georeference::FindHorizontalLines(survey, threads);
   survey.directions = georeference::FindDirections(lines.lines, lines.photos);

@@ -70,7 +70,8 @@ FaultSurvey MakeFaultSurvey(const simulate::SimulateOptions& options, double cam
   survey.enu_from_model = simulate::Inverse(model_from_enu);
   for (const simulate::PhotoPlan& photo : Fly(place, camera_tilt_deg, random)) {
     const geo::Rigid3d cam_from_model = geo::TransformCameraWorld(photo.cam_from_enu, model_from_enu);
-    survey.stations.push_back(prepare::input::MakeStation(photo.name, cam_from_model, simulate::MakeTags(photo, place.camera, frame)));
+    survey.photos.push_back(prepare::input::PreparePhoto({.name = photo.name, .tags = simulate::MakeTags(photo, place.camera, frame)},
+                                                         survey.photos.size(), cam_from_model));
   }
   for (const Vector3d& x : MakePoints(place, random)) survey.points.push_back(model_from_enu * x);
   return survey;
@@ -105,7 +106,7 @@ simulate::SimulateOptions RandomFaults(uint64_t seed) {
 }
 
 PlaceErrors FindPlace(const FaultSurvey& survey, const prepare::georeference::PlaceOptions& options) {
-  const prepare::georeference::Georeference found = prepare::georeference::PlaceOnEarth(survey.stations, survey.points, options);
+  const prepare::georeference::Georeference found = prepare::georeference::PlaceOnEarth(survey.photos, survey.points, options);
   PlaceErrors errors{.georeferenced = found.ok, .sigma = found.fit.accuracy, .lag_s = found.fit.tag_lag_s};
   for (const survey::Problem& problem : found.problems) errors.problems.push_back(problem.code);
   if (!found.ok) return errors;
@@ -122,8 +123,8 @@ PlaceErrors FindPlace(const FaultSurvey& survey, const prepare::georeference::Pl
   errors.yaw_deg = kDegreesPerRadian * std::abs(std::atan2(error(1, 0) - error(0, 1), error(0, 0) + error(1, 1)));
   errors.scale_percent = 100.0 * std::abs(std::log(found.enu_from_model.scale / survey.enu_from_model.scale));
   Vector3d middle = Vector3d::Zero();
-  for (const prepare::input::Station& station : survey.stations)
-    middle += station.cam_from_model.OriginInSource() / static_cast<double>(survey.stations.size());
+  for (const prepare::input::PreparedPhoto& photo : survey.photos)
+    middle += photo.cam_from_model.OriginInSource() / static_cast<double>(survey.photos.size());
   const Vector3d offset = found.enu_from_model * middle - convert(survey.enu_from_model * middle);
   errors.horizontal_m = offset.head<2>().norm();
   errors.vertical_m = std::abs(offset.z());

@@ -10,7 +10,7 @@
 #include "core/geo/place_accuracy.h"
 #include "core/geo/transform.h"
 #include "prepare/georeference/georeference.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 #include "simulate/simulate_options.h"
 
 namespace skyquilt::bench {
@@ -18,7 +18,7 @@ namespace skyquilt::bench {
 struct FaultSurvey {
   geo::Geodetic origin;  // of the true ENU frame
   geo::Similarity3d enu_from_model;
-  std::vector<prepare::input::Station> stations;
+  std::vector<prepare::input::PreparedPhoto> photos;
   std::vector<Eigen::Vector3d> points;  // on ground, roofs and trees, in the model's frame
 };
 

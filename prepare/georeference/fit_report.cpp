@@ -67,7 +67,7 @@ void ReportBias(const std::vector<int>& flight, const std::vector<Tag>& tags, co
   const auto n_flights = static_cast<size_t>(input::CountFlights(flight));
   std::vector<double> first(n_flights, kUnknown), last(n_flights, kUnknown), sum(n_flights, 0.0), count(n_flights, 0.0);
   for (size_t k = 0; k < tags.size(); ++k) {
-    const auto f = static_cast<size_t>(flight[tags[k].station]);
+    const auto f = static_cast<size_t>(flight[tags[k].photo]);
     if (std::isnan(first[f])) first[f] = adjustment.bias_m[k];
     last[f] = adjustment.bias_m[k];
     sum[f] += adjustment.bias_m[k];
@@ -84,7 +84,7 @@ void ReportBias(const std::vector<int>& flight, const std::vector<Tag>& tags, co
 SecondGroup FindSecondGroup(const std::vector<Tag>& tags, const Georeference& result, double noise_m) {
   std::vector<Vector2d> others;
   for (const Tag& tag : tags) {
-    if (result.inlier[tag.station] == 0) others.emplace_back(result.residual_m[tag.station].head<2>());
+    if (result.inlier[tag.photo] == 0) others.emplace_back(result.residual_m[tag.photo].head<2>());
   }
   const double radius_m = std::max(kLeastGroupRadius_m, kGroupSigmas * noise_m);
   SecondGroup best;

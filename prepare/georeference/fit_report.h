@@ -19,7 +19,7 @@ geo::PlaceAccuracy AccuracyOf(const Adjustment& adjustment, const std::vector<Ta
 std::vector<survey::GravityEvidence> ShownEvidence(const Gravity& gravity, const Eigen::Quaterniond& enu_from_model, double tags_share);
 // The heights of the tags as evidence; `n` tags.
 survey::GravityEvidence HeightEvidence(const Adjustment& adjustment, int n, double tags_share);
-// Offset and drift per flight; `flight` is that of each station. 0 for flights without tags.
+// Offset and drift per flight; `flight` is that of each photo. 0 for flights without tags.
 void ReportBias(const std::vector<int>& flight, const std::vector<Tag>& tags, const Adjustment& adjustment, survey::GeoFit& fit);
 
 // Tags that disagree with the result by about the same horizontal shift, as after a jump of the receiver.

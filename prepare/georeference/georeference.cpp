@@ -42,7 +42,7 @@ void Clear(size_t n, Georeference& result) {
 }
 
 // Residuals and the errors of the fit, from the transform and the corrections in `result`.
-void Evaluate(const std::vector<input::Station>& stations, const std::vector<Tag>& tags, double threshold_m, Georeference& result) {
+void Evaluate(const std::vector<input::PreparedPhoto>& photos, const std::vector<Tag>& tags, double threshold_m, Georeference& result) {
   survey::GeoFit& fit = result.fit;
   fit.n_matches = static_cast<int>(tags.size());
   fit.n_inliers = 0;
@@ -50,8 +50,8 @@ void Evaluate(const std::vector<input::Station>& stations, const std::vector<Tag
   double horizontal = 0.0, vertical = 0.0;
   int n_heights = 0;
   for (const Tag& tag : tags) {
-    const size_t i = tag.station;
-    const Vector3d centre = result.enu_from_model * stations[i].cam_from_model.OriginInSource();
+    const size_t i = tag.photo;
+    const Vector3d centre = result.enu_from_model * photos[i].cam_from_model.OriginInSource();
     const Vector3d residual = centre - (tag.x_in_enu + result.correction_m[i]);
     result.residual_m[i] = residual;
     const bool has_height = std::isfinite(residual.z());
@@ -70,11 +70,11 @@ void Evaluate(const std::vector<input::Station>& stations, const std::vector<Tag
 }
 
 // The flight with most RTK tags, else with most tags.
-int ReferenceFlight(const std::vector<input::Station>& stations, const std::vector<Tag>& tags, const std::vector<int>& flight) {
+int ReferenceFlight(const std::vector<input::PreparedPhoto>& photos, const std::vector<Tag>& tags, const std::vector<int>& flight) {
   std::vector<int> n_tagged(static_cast<size_t>(input::CountFlights(flight)), 0), n_rtk = n_tagged;
   for (const Tag& tag : tags) {
-    ++n_tagged[static_cast<size_t>(flight[tag.station])];
-    n_rtk[static_cast<size_t>(flight[tag.station])] += stations[tag.station].rtk ? 1 : 0;
+    ++n_tagged[static_cast<size_t>(flight[tag.photo])];
+    n_rtk[static_cast<size_t>(flight[tag.photo])] += photos[tag.photo].rtk ? 1 : 0;
   }
   const std::vector<int>& votes = *std::max_element(n_rtk.begin(), n_rtk.end()) > 0 ? n_rtk : n_tagged;
   return static_cast<int>(std::max_element(votes.begin(), votes.end()) - votes.begin());
@@ -88,11 +88,11 @@ struct TagsAlone {
   geo::Similarity3d enu_from_model;
 };
 
-TagsAlone FitTagsAlone(const std::vector<input::Station>& stations, const std::vector<Tag>& tags, const PlaceOptions& options) {
+TagsAlone FitTagsAlone(const std::vector<input::PreparedPhoto>& photos, const std::vector<Tag>& tags, const PlaceOptions& options) {
   std::vector<Vector3d> in_model, in_enu;
   for (const Tag& tag : tags) {
     if (!tag.x_in_enu.allFinite()) continue;
-    in_model.push_back(stations[tag.station].cam_from_model.OriginInSource());
+    in_model.push_back(photos[tag.photo].cam_from_model.OriginInSource());
     in_enu.push_back(tag.x_in_enu);
   }
   const geo::RobustSimilarityFit fit = geo::FitSimilarityRobustly(
@@ -113,26 +113,26 @@ TagsAlone FitTagsAlone(const std::vector<input::Station>& stations, const std::v
 }
 
 // For comparison with gimbal angles that the photos contradict.
-std::optional<Vector3d> UpByTags(const std::vector<input::Station>& stations, const PlaceOptions& options) {
+std::optional<Vector3d> UpByTags(const std::vector<input::PreparedPhoto>& photos, const PlaceOptions& options) {
   constexpr double kUseful_deg = 10.0;
-  const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value(); });
-  if (n_tagged < kMinAgreeing || TagsAboveOneAnother(stations)) return std::nullopt;
-  std::vector<size_t> order(stations.size());
+  const auto n_tagged = std::count_if(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.gps.has_value(); });
+  if (n_tagged < kMinAgreeing || TagsAboveOneAnother(photos)) return std::nullopt;
+  std::vector<size_t> order(photos.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  const std::vector<Tag> tags = CollectTags(stations, order, MedianPosition(stations), JudgeHeights(stations));
-  const TagsAlone alone = FitTagsAlone(stations, tags, options);
+  const std::vector<Tag> tags = CollectTags(photos, order, MedianPosition(photos), JudgeHeights(photos));
+  const TagsAlone alone = FitTagsAlone(photos, tags, options);
   return alone.ok && alone.sigma_deg < kUseful_deg ? std::optional(alone.up_in_model) : std::nullopt;
 }
 
-std::vector<input::Station> WithoutAngles(std::vector<input::Station> stations) {
-  for (input::Station& station : stations) station.up_in_cam.reset();
-  return stations;
+std::vector<input::PreparedPhoto> WithoutAngles(std::vector<input::PreparedPhoto> photos) {
+  for (input::PreparedPhoto& photo : photos) photo.up_in_cam.reset();
+  return photos;
 }
 
 // All stages for tags that may fit. Sets result.ok.
 void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heights, Georeference& result) {
-  const std::vector<Tag> tags = CollectTags(flight.stations, flight.track.order(), result.origin, heights);
-  const TagsAlone alone = FitTagsAlone(flight.stations, tags, flight.options);
+  const std::vector<Tag> tags = CollectTags(flight.photos, flight.track.order(), result.origin, heights);
+  const TagsAlone alone = FitTagsAlone(flight.photos, tags, flight.options);
   Vector3d up = gravity.up;
   const double gravity_sigma_deg = kDegrees * gravity.Sigma();
   // Cameras that were turned at random say nothing about gravity; then the positions have to.
@@ -145,22 +145,21 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
   }
   geo::Similarity3d start = SimilarityOfFit(flight, tags, level_from_model, flat);
   Vector3d middle = Vector3d::Zero();
-  for (const input::Station& station : flight.stations)
-    middle += station.cam_from_model.OriginInSource() / static_cast<double>(flight.stations.size());
+  for (const input::PreparedPhoto& photo : flight.photos) middle += photo.cam_from_model.OriginInSource() / static_cast<double>(flight.photos.size());
 
   HeightBias bias;
   if (flight.options.flight_offsets != "off" && heights != HeightTags::kUnknown) {
     std::vector<int> number;
     std::vector<double> phase;
     for (const Tag& tag : tags) {
-      number.push_back(flight.flight[tag.station]);
-      phase.push_back(flight.track.Phase(tag.station));
+      number.push_back(flight.flight[tag.photo]);
+      phase.push_back(flight.track.Phase(tag.photo));
     }
-    bias = HeightBias(number, phase, ReferenceFlight(flight.stations, tags, flight.flight));
+    bias = HeightBias(number, phase, ReferenceFlight(flight.photos, tags, flight.flight));
   }
   const BiasChoice choice = ChooseBias(ObserveHeights(flight, tags, start, flat, gravity, middle), bias);
   start = Turned(start, start * middle, choice.solution);
-  const auto n_rtk = std::count_if(tags.begin(), tags.end(), [&](const Tag& tag) { return flight.stations[tag.station].rtk; });
+  const auto n_rtk = std::count_if(tags.begin(), tags.end(), [&](const Tag& tag) { return flight.photos[tag.photo].rtk; });
   const bool lags = LagsToTry(flight).size() > 1;
   const double lag_sigma_s = !lags ? 0.0 : 2 * n_rtk > static_cast<std::ptrdiff_t>(tags.size()) ? kRtkLagSigma_s : kLagSigma_s;
   const Adjustment adjustment = Adjust({.track = flight.track,
@@ -176,15 +175,15 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
   survey::GeoFit& fit = result.fit;
   double low = 0.0, high = 0.0;
   for (size_t k = 0; k < tags.size(); ++k) {
-    const size_t i = tags[k].station;
+    const size_t i = tags[k].photo;
     const Vector3d moved =
-        adjustment.enu_from_model.scale * (adjustment.enu_from_model.rotation *
-                                           (flight.stations[i].cam_from_model.OriginInSource() - flight.track.Before(i, adjustment.lag_s).position));
+        adjustment.enu_from_model.scale *
+        (adjustment.enu_from_model.rotation * (flight.photos[i].cam_from_model.OriginInSource() - flight.track.Before(i, adjustment.lag_s).position));
     result.correction_m[i] = moved - adjustment.bias_m[k] * Vector3d::UnitZ();
     low = std::min(low, adjustment.bias_m[k]);
     high = std::max(high, adjustment.bias_m[k]);
   }
-  Evaluate(flight.stations, tags, flight.options.ransac_threshold_m, result);
+  Evaluate(flight.photos, tags, flight.options.ransac_threshold_m, result);
   fit.tag_lag_s = adjustment.lag_s;
   fit.tag_lag_sigma_s = lags ? std::sqrt(adjustment.covariance(7, 7)) : kNan;
   if (bias.size() > 0) ReportBias(flight.flight, tags, adjustment, fit);
@@ -203,7 +202,7 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
   // Two standard deviations reach the mean of both groups.
   const double doubt = static_cast<double>(second.n) / std::max(1.0, static_cast<double>(second.n + fit.n_inliers));
   fit.accuracy.horizontal_m = std::hypot(fit.accuracy.horizontal_m, 0.5 * doubt * second.distance_m);
-  const bool one_line = OnOneLine(flight.stations, level_from_model.toRotationMatrix());
+  const bool one_line = OnOneLine(flight.photos, level_from_model.toRotationMatrix());
   for (survey::Problem& problem : TooUncertain(fit, one_line)) result.problems.push_back(std::move(problem));
   if (!result.problems.empty()) return;
   result.ok = true;
@@ -217,7 +216,7 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
                          .second_group = second.n,
                          .second_group_m = second.distance_m};
   for (const Tag& tag : tags) {
-    if (result.inlier[tag.station] == 0) findings.disagreeing.push_back(flight.stations[tag.station].name);
+    if (result.inlier[tag.photo] == 0) findings.disagreeing.push_back(flight.photos[tag.photo].file.name);
   }
   std::sort(findings.disagreeing.begin(), findings.disagreeing.end());
   result.problems = PlaceProblems(findings);
@@ -227,15 +226,15 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
 // tell.
 std::optional<survey::Problem> CoordinateProblem(const TaggedFlight& flight, const Gravity& gravity, int n_tags) {
   const Matrix3d level_from_model = linear::RotationBetween(gravity.up, Vector3d::UnitZ()).toRotationMatrix();
-  if (OnOneLine(flight.stations, level_from_model)) return std::nullopt;
-  const auto agreeing = [&](const std::vector<input::Station>& stations) {
-    const std::vector<Tag> tags = CollectTags(stations, flight.track.order(), MedianPosition(stations), HeightTags::kUnknown);
-    return FitLevelled({stations, flight.track, flight.flight, flight.options}, tags, level_from_model).n_inliers;
+  if (OnOneLine(flight.photos, level_from_model)) return std::nullopt;
+  const auto agreeing = [&](const std::vector<input::PreparedPhoto>& photos) {
+    const std::vector<Tag> tags = CollectTags(photos, flight.track.order(), MedianPosition(photos), HeightTags::kUnknown);
+    return FitLevelled({photos, flight.track, flight.flight, flight.options}, tags, level_from_model).n_inliers;
   };
-  const int as_given = agreeing(flight.stations);
+  const int as_given = agreeing(flight.photos);
   std::optional<survey::Problem> found;
   int most = 0;
-  for (const CoordinateFault& fault : PossibleCoordinateFaults(flight.stations)) {
+  for (const CoordinateFault& fault : PossibleCoordinateFaults(flight.photos)) {
     const int repaired = agreeing(fault.repaired);
     if (repaired <= most || repaired < kMinAgreeing || 2 * repaired <= n_tags || 2 * repaired <= 3 * as_given) continue;
     most = repaired;
@@ -245,23 +244,24 @@ std::optional<survey::Problem> CoordinateProblem(const TaggedFlight& flight, con
 }
 
 // Whether the photos are above one another, and their tags do not tell the little by which they differ horizontally from noise.
-bool LeavesNorthOpen(const std::vector<input::Station>& stations, const Gravity& gravity, const Georeference& result) {
+bool LeavesNorthOpen(const std::vector<input::PreparedPhoto>& photos, const Gravity& gravity, const Georeference& result) {
   constexpr double kOpen_deg = 10.0;
   if (result.ok && result.fit.accuracy.yaw_deg <= kOpen_deg) return false;
-  return TagsFormColumn(stations) && CamerasAboveOneAnother(stations, gravity);
+  return TagsFormColumn(photos) && CamerasAboveOneAnother(photos, gravity);
 }
 
 }  // namespace
 
-Georeference PlaceOnEarth(const std::vector<input::Station>& given, const std::vector<Vector3d>& points, const PlaceOptions& options) {
+Georeference PlaceOnEarth(const std::vector<input::PreparedPhoto>& given, const std::vector<Vector3d>& points, const PlaceOptions& options) {
   Georeference result;
   result.gimbal = JudgeGimbal(given, points, [&] { return UpByTags(given, options); });
-  const std::vector<input::Station> without_angles = result.gimbal.use == GimbalUse::kDropped ? WithoutAngles(given) : std::vector<input::Station>();
-  const std::vector<input::Station>& stations = result.gimbal.use == GimbalUse::kDropped ? without_angles : given;
-  result.flight = input::SplitFlights(stations, options.flight_gap_s);
-  Clear(stations.size(), result);
-  const Gravity gravity = FindGravity(stations, points);
-  const auto n_tagged = std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value(); });
+  const std::vector<input::PreparedPhoto> without_angles =
+      result.gimbal.use == GimbalUse::kDropped ? WithoutAngles(given) : std::vector<input::PreparedPhoto>();
+  const std::vector<input::PreparedPhoto>& photos = result.gimbal.use == GimbalUse::kDropped ? without_angles : given;
+  result.flight = input::SplitFlights(photos, options.flight_gap_s);
+  Clear(photos.size(), result);
+  const Gravity gravity = FindGravity(photos, points);
+  const auto n_tagged = std::count_if(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.gps.has_value(); });
   result.fit.n_matches = static_cast<int>(n_tagged);
   const char* use_tags =
       "Use photos with GPS tags (EXIF or XMP): at least four that agree, not all in one place. Then run the same command with --restart";
@@ -270,28 +270,28 @@ Georeference PlaceOnEarth(const std::vector<input::Station>& given, const std::v
   } else if (n_tagged < kMinAgreeing) {
     result.problems.push_back(
         NoPlace("too_few_tags", "only " + std::to_string(n_tagged) + " photos with a pose have a GPS tag, 4 are needed", use_tags));
-  } else if (TagsAboveOneAnother(stations)) {
-    result.problems.push_back(OnePlaceProblem(stations, gravity));
+  } else if (TagsAboveOneAnother(photos)) {
+    result.problems.push_back(OnePlaceProblem(photos, gravity));
   } else {
-    result.origin = MedianPosition(stations);
-    const Track track(stations, result.flight);
-    const TaggedFlight flight{stations, track, result.flight, options};
-    FitTags(flight, gravity, JudgeHeights(stations), result);
+    result.origin = MedianPosition(photos);
+    const Track track(photos, result.flight);
+    const TaggedFlight flight{photos, track, result.flight, options};
+    FitTags(flight, gravity, JudgeHeights(photos), result);
     if (2 * result.fit.n_inliers < result.fit.n_matches) {
       if (const auto fault = CoordinateProblem(flight, gravity, result.fit.n_matches)) {
         result.ok = false;
         result.problems = {NoPlace(fault->code, fault->finding, fault->advice)};
       }
     }
-    if (LeavesNorthOpen(stations, gravity, result)) {
+    if (LeavesNorthOpen(photos, gravity, result)) {
       result.ok = false;
       result.problems = {ColumnProblem()};
     }
   }
   if (!result.ok) {
     result.origin = {};
-    Clear(stations.size(), result);
-    result.enu_from_model = LocalFrame(stations, points, gravity.up);
+    Clear(photos.size(), result);
+    result.enu_from_model = LocalFrame(photos, points, gravity.up);
     // Residuals, corrections and accuracies of a fit that was refused say nothing about the local frame.
     const survey::GeoFit refused = result.fit;
     result.fit = {.n_matches = refused.n_matches,
@@ -305,18 +305,18 @@ Georeference PlaceOnEarth(const std::vector<input::Station>& given, const std::v
   return result;
 }
 
-Georeference KeepExactFrame(const std::vector<input::Station>& stations, const geo::Geodetic& origin, const PlaceOptions& options) {
+Georeference KeepExactFrame(const std::vector<input::PreparedPhoto>& photos, const geo::Geodetic& origin, const PlaceOptions& options) {
   Georeference result;
   result.ok = true;
   result.origin = origin;
-  result.flight = input::SplitFlights(stations, options.flight_gap_s);
-  Clear(stations.size(), result);
-  const Track track(stations, result.flight);
-  Evaluate(stations, CollectTags(stations, track.order(), origin, HeightTags::kTagged), options.ransac_threshold_m, result);
+  result.flight = input::SplitFlights(photos, options.flight_gap_s);
+  Clear(photos.size(), result);
+  const Track track(photos, result.flight);
+  Evaluate(photos, CollectTags(photos, track.order(), origin, HeightTags::kTagged), options.ransac_threshold_m, result);
   result.fit.accuracy = {.scale_percent = 0.0, .tilt_deg = 0.0, .yaw_deg = 0.0, .horizontal_m = 0.0, .vertical_m = 0.0};
   PlaceFindings findings{.fit = result.fit, .gimbal_used = true};
-  for (size_t i = 0; i < stations.size(); ++i) {
-    if (stations[i].gps && result.inlier[i] == 0) findings.disagreeing.push_back(stations[i].name);
+  for (size_t i = 0; i < photos.size(); ++i) {
+    if (photos[i].gps && result.inlier[i] == 0) findings.disagreeing.push_back(photos[i].file.name);
   }
   result.problems = PlaceProblems(findings);
   return result;

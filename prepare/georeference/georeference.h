@@ -13,7 +13,7 @@
 #include "prepare/georeference/gimbal_check.h"
 #include "prepare/georeference/gravity.h"
 #include "prepare/georeference/place_options.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::georeference {
 
@@ -24,8 +24,8 @@ struct Georeference {
   survey::GeoFit fit;
   std::vector<survey::Problem> problems;
   GimbalVerdict gimbal;     // dropped angles have no part in the result
-  std::vector<int> flight;  // per station, from 0
-  // Per station; zero and NaN without GPS or geo-reference.
+  std::vector<int> flight;  // per photo, from 0
+  // Per photo; zero and NaN without GPS or geo-reference.
   std::vector<Eigen::Vector3d> correction_m;  // what the fit adds to the tag, ENU
   std::vector<Eigen::Vector3d> residual_m;    // fitted camera less corrected tag, ENU; z is NaN where heights are not used
   std::vector<char> inlier;                   // 1 if the tag agrees within the threshold
@@ -33,12 +33,12 @@ struct Georeference {
 
 // `points` are the sparse points in the model's frame, may be empty. Gimbal angles that stand alone against the photos and the tagged positions are
 // not used (gimbal_check.h).
-Georeference PlaceOnEarth(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points, const PlaceOptions& options);
+Georeference PlaceOnEarth(const std::vector<input::PreparedPhoto>& photos, const std::vector<Eigen::Vector3d>& points, const PlaceOptions& options);
 // For a model that is already in ENU about `origin`: keeps its frame and only computes the residuals of the tags.
-Georeference KeepExactFrame(const std::vector<input::Station>& stations, const geo::Geodetic& origin, const PlaceOptions& options);
+Georeference KeepExactFrame(const std::vector<input::PreparedPhoto>& photos, const geo::Geodetic& origin, const PlaceOptions& options);
 // Frame for a model without GPS: z along `up`; origin: median of the points; the median depth of points in the cameras becomes kLocalDepth. `up` and
 // `points` are in the model's frame; `points` may be empty.
-geo::Similarity3d LocalFrame(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up);
+geo::Similarity3d LocalFrame(const std::vector<input::PreparedPhoto>& photos, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up);
 
 // Less accurate than this, no place is claimed.
 constexpr double kMaxTiltSigma_deg = 5.0;

@@ -37,12 +37,12 @@ int Vote(double to_cameras_deg, double to_gimbal_deg) {
 }
 
 // Cameras are above what they see.
-int VoteOfSides(const std::vector<input::Station>& stations, const std::vector<Vector3d>& points, const Vector3d& by_cameras,
+int VoteOfSides(const std::vector<input::PreparedPhoto>& photos, const std::vector<Vector3d>& points, const Vector3d& by_cameras,
                 const Vector3d& by_gimbal) {
   if (points.empty()) return 0;
   std::vector<Vector3d> centres;
-  centres.reserve(stations.size());
-  for (const input::Station& station : stations) centres.push_back(station.cam_from_model.OriginInSource());
+  centres.reserve(photos.size());
+  for (const input::PreparedPhoto& photo : photos) centres.push_back(photo.cam_from_model.OriginInSource());
   const Vector3d way = MedianOf(centres) - MedianOf(points);
   if (!(way.norm() > 0.0)) return 0;
   const double cameras = way.normalized().dot(by_cameras), gimbal = way.normalized().dot(by_gimbal);
@@ -50,20 +50,20 @@ int VoteOfSides(const std::vector<input::Station>& stations, const std::vector<V
 }
 
 // Whether the right axes of the cameras are level for this direction of up.
-bool IsLevel(const std::vector<input::Station>& stations, const Vector3d& up) {
+bool IsLevel(const std::vector<input::PreparedPhoto>& photos, const Vector3d& up) {
   constexpr double kLevel = 0.26;  // sine of 15 degrees
   std::vector<double> off;
-  off.reserve(stations.size());
-  for (const input::Station& station : stations) off.push_back(std::abs((station.cam_from_model.rotation.conjugate() * Vector3d::UnitX()).dot(up)));
+  off.reserve(photos.size());
+  for (const input::PreparedPhoto& photo : photos) off.push_back(std::abs((photo.cam_from_model.rotation.conjugate() * Vector3d::UnitX()).dot(up)));
   return base::Median(std::move(off)) < kLevel;
 }
 
 }  // namespace
 
-GimbalVerdict JudgeGimbal(const std::vector<input::Station>& stations, const std::vector<Vector3d>& points,
+GimbalVerdict JudgeGimbal(const std::vector<input::PreparedPhoto>& photos, const std::vector<Vector3d>& points,
                           const std::function<std::optional<Vector3d>()>& tags_up) {
-  const std::vector<UpEvidence> gimbal = GimbalEvidence(stations);
-  const std::vector<UpEvidence> cameras = CameraEvidence(stations);
+  const std::vector<UpEvidence> gimbal = GimbalEvidence(photos);
+  const std::vector<UpEvidence> cameras = CameraEvidence(photos);
   if (gimbal.empty() || cameras.empty()) return {};
   const Vector3d &by_gimbal = gimbal.front().up, &by_cameras = cameras.front().up;
   const double angle_deg = AngleBetween(by_gimbal, by_cameras);
@@ -71,9 +71,9 @@ GimbalVerdict JudgeGimbal(const std::vector<input::Station>& stations, const std
   // By the angles the pictures are level, and only the tilt differs: so it is too when all cameras look the same way, at an angle or at a wall, and
   // the camera axes know nothing of it. Then only the tagged positions can contradict the angles.
   constexpr double kOpposite_deg = 120.0;
-  const bool level = angle_deg < kOpposite_deg && IsLevel(stations, by_gimbal);
+  const bool level = angle_deg < kOpposite_deg && IsLevel(photos, by_gimbal);
 
-  const int sides = VoteOfSides(stations, points, by_cameras, by_gimbal);
+  const int sides = VoteOfSides(photos, points, by_cameras, by_gimbal);
   int ground_vote = 0;
   if (const std::vector<UpEvidence> ground = GroundEvidence(points, by_cameras); !ground.empty()) {
     // The normal of a plane has no sign.

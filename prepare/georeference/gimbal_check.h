@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::georeference {
 
@@ -26,7 +26,7 @@ struct GimbalVerdict {
 
 // `points` are sparse points, all in the model's frame; may be empty. `tags_up`: the direction of up of a fit to the tagged positions alone, nothing
 // when they do not determine it; asked for only when angles and axes contradict each other.
-GimbalVerdict JudgeGimbal(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points,
+GimbalVerdict JudgeGimbal(const std::vector<input::PreparedPhoto>& photos, const std::vector<Eigen::Vector3d>& points,
                           const std::function<std::optional<Eigen::Vector3d>()>& tags_up);
 
 // How angles may be wrong.

@@ -128,18 +128,18 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
   return result;
 }
 
-Vector3d ViewInModel(const input::Station& station) {
-  return station.cam_from_model.rotation.conjugate() * Vector3d::UnitZ();
+Vector3d ViewInModel(const input::PreparedPhoto& photo) {
+  return photo.cam_from_model.rotation.conjugate() * Vector3d::UnitZ();
 }
 
 // A first guess from the axes of the cameras: perpendicular to their right axes where these differ in direction, otherwise against the mean view.
-Vector3d RoughUp(const std::vector<input::Station>& stations) {
+Vector3d RoughUp(const std::vector<input::PreparedPhoto>& photos) {
   Matrix3d right_axes = Matrix3d::Zero();
   Vector3d view = Vector3d::Zero();
   Vector3d camera_up = Vector3d::Zero();
-  const auto n = static_cast<double>(stations.size());
-  for (const input::Station& station : stations) {
-    const Matrix3d model_from_cam = station.cam_from_model.rotation.conjugate().toRotationMatrix();
+  const auto n = static_cast<double>(photos.size());
+  for (const input::PreparedPhoto& photo : photos) {
+    const Matrix3d model_from_cam = photo.cam_from_model.rotation.conjugate().toRotationMatrix();
     right_axes += model_from_cam.col(0) * model_from_cam.col(0).transpose() / n;
     view += model_from_cam.col(2) / n;
     camera_up -= model_from_cam.col(1) / n;
@@ -166,13 +166,13 @@ double Gravity::Sigma() const {
   return SigmaOf(up, information);
 }
 
-std::vector<UpEvidence> GimbalEvidence(const std::vector<input::Station>& stations) {
+std::vector<UpEvidence> GimbalEvidence(const std::vector<input::PreparedPhoto>& photos) {
   std::vector<Statement> statements;
   std::array<std::vector<double>, 3> component;
-  for (const input::Station& station : stations) {
-    if (!station.up_in_cam) continue;
-    statements.push_back(MakeStatement(station.cam_from_model.rotation.toRotationMatrix(), *station.up_in_cam));
-    const Vector3d up = station.cam_from_model.rotation.conjugate() * *station.up_in_cam;
+  for (const input::PreparedPhoto& photo : photos) {
+    if (!photo.up_in_cam) continue;
+    statements.push_back(MakeStatement(photo.cam_from_model.rotation.toRotationMatrix(), *photo.up_in_cam));
+    const Vector3d up = photo.cam_from_model.rotation.conjugate() * *photo.up_in_cam;
     for (size_t axis = 0; axis < 3; ++axis) component[axis].push_back(up[static_cast<Eigen::Index>(axis)]);
   }
   if (statements.empty()) return {};
@@ -183,16 +183,16 @@ std::vector<UpEvidence> GimbalEvidence(const std::vector<input::Station>& statio
   return {evidence};
 }
 
-std::vector<UpEvidence> CameraEvidence(const std::vector<input::Station>& stations) {
-  if (stations.empty()) return {};
-  UpEvidence evidence{.up = RoughUp(stations)};
+std::vector<UpEvidence> CameraEvidence(const std::vector<input::PreparedPhoto>& photos) {
+  if (photos.empty()) return {};
+  UpEvidence evidence{.up = RoughUp(photos)};
   // Which cameras are meant to look straight down depends on the result.
   for (int round = 0; round < 3; ++round) {
     std::vector<Statement> statements;
-    statements.reserve(stations.size());
-    for (const input::Station& station : stations) {
-      const Matrix3d cam_from_model = station.cam_from_model.rotation.toRotationMatrix();
-      const bool nadir = -ViewInModel(station).dot(evidence.up) > std::cos(kNadir_deg * kRadiansPerDegree);
+    statements.reserve(photos.size());
+    for (const input::PreparedPhoto& photo : photos) {
+      const Matrix3d cam_from_model = photo.cam_from_model.rotation.toRotationMatrix();
+      const bool nadir = -ViewInModel(photo).dot(evidence.up) > std::cos(kNadir_deg * kRadiansPerDegree);
       Vector3d up_in_cam = nadir ? Vector3d(0.0, 0.0, -1.0) : Vector3d(cam_from_model * evidence.up);
       up_in_cam.x() = 0.0;
       statements.push_back(MakeStatement(cam_from_model, up_in_cam.normalized()));
@@ -255,12 +255,12 @@ std::vector<UpEvidence> GroundEvidence(const std::vector<Vector3d>& points, cons
   return {evidence};
 }
 
-Gravity FindGravity(const std::vector<input::Station>& stations, const std::vector<Vector3d>& points) {
+Gravity FindGravity(const std::vector<input::PreparedPhoto>& photos, const std::vector<Vector3d>& points) {
   Gravity gravity;
-  const std::vector<UpEvidence> gimbal = GimbalEvidence(stations);
-  std::vector<UpEvidence> cameras = CameraEvidence(stations);
+  const std::vector<UpEvidence> gimbal = GimbalEvidence(photos);
+  std::vector<UpEvidence> cameras = CameraEvidence(photos);
   if (cameras.empty()) return gravity;
-  const bool enough = !gimbal.empty() && 2 * gimbal.front().n >= static_cast<int>(stations.size());
+  const bool enough = !gimbal.empty() && 2 * gimbal.front().n >= static_cast<int>(photos.size());
   for (UpEvidence& evidence : cameras) evidence.used = !enough;
   const Vector3d rough_up = enough ? gimbal.front().up : cameras.front().up;
   gravity.evidence = gimbal;

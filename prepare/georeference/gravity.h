@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::georeference {
 
@@ -32,17 +32,17 @@ struct Gravity {
 
 // Gimbal angles: every tagged photo gives an up vector; an error of the mounting that is common to all photos is estimated with it
 // (kGimbalCommon_deg). Empty when no photo has angles.
-std::vector<UpEvidence> GimbalEvidence(const std::vector<input::Station>& stations);
+std::vector<UpEvidence> GimbalEvidence(const std::vector<input::PreparedPhoto>& photos);
 // Camera axes: the right axis of every camera is level, and cameras that look about straight down are meant to look exactly down; common error
-// kCameraCommon_deg. Empty for no stations.
-std::vector<UpEvidence> CameraEvidence(const std::vector<input::Station>& stations);
+// kCameraCommon_deg. Empty for no photos.
+std::vector<UpEvidence> CameraEvidence(const std::vector<input::PreparedPhoto>& photos);
 // The plane of the sparse points, as seen from `rough_up`: ground slopes, hence the accuracy of kGroundSlope_deg. Empty for fewer than 30 points or
 // points on a line. Any order of points gives the same result up to rounding.
 std::vector<UpEvidence> GroundEvidence(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& rough_up);
 
 // All of them, weighted by their information. Gimbal angles replace the camera axes when at least half of the photos have them. Evidence that
 // contradicts itself widens the result (Birge's ratio). `points` are in the model's frame, may be empty.
-Gravity FindGravity(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points);
+Gravity FindGravity(const std::vector<input::PreparedPhoto>& photos, const std::vector<Eigen::Vector3d>& points);
 
 constexpr double kGimbalCommon_deg = 0.25;
 constexpr double kCameraCommon_deg = 2.0;

@@ -46,7 +46,7 @@ HorizontalFit FitLevelled(const TaggedFlight& flight, const std::vector<Tag>& ta
   targets.reserve(tags.size());
   for (const Tag& tag : tags) targets.push_back(tag.x_in_enu.head<2>());
   const auto level = [&](size_t k, double lag_s) {
-    return Vector2d((level_from_model * flight.track.Before(tags[k].station, lag_s).position).head<2>());
+    return Vector2d((level_from_model * flight.track.Before(tags[k].photo, lag_s).position).head<2>());
   };
   HorizontalFitOptions options{
       .threshold_m = flight.options.ransac_threshold_m, .lags_s = LagsToTry(flight), .seed = static_cast<uint64_t>(flight.options.seed)};
@@ -68,7 +68,7 @@ geo::Similarity3d SimilarityOfFit(const TaggedFlight& flight, const std::vector<
   result.rotation = (Eigen::Quaterniond(Eigen::AngleAxisd(flat.angle, Vector3d::UnitZ())) * level_from_model).normalized();
   std::vector<double> heights, cameras;
   for (size_t k = 0; k < tags.size(); ++k) {
-    const double z = result.scale * (result.rotation * flight.track.Before(tags[k].station, fit.lag_s).position).z();
+    const double z = result.scale * (result.rotation * flight.track.Before(tags[k].photo, fit.lag_s).position).z();
     cameras.push_back(z);
     if (fit.inlier[k] != 0 && std::isfinite(tags[k].x_in_enu.z())) heights.push_back(tags[k].x_in_enu.z() - z);
   }
@@ -86,7 +86,7 @@ HeightObservations ObserveHeights(const TaggedFlight& flight, const std::vector<
   heights.tilt = Eigen::MatrixX2d::Zero(n, 2);
   const Vector3d middle_in_enu = start * middle;
   for (size_t k = 0; k < tags.size(); ++k) {
-    const Vector3d x = start * flight.track.Before(tags[k].station, fit.lag_s).position;
+    const Vector3d x = start * flight.track.Before(tags[k].photo, fit.lag_s).position;
     const auto row = static_cast<Eigen::Index>(k);
     // A rotation w about the middle raises a point at r by w x r.
     const Vector3d arm = x - middle_in_enu;
@@ -114,10 +114,10 @@ geo::Similarity3d Turned(const geo::Similarity3d& start, const Vector3d& point, 
   return turned;
 }
 
-bool OnOneLine(const std::vector<input::Station>& stations, const Matrix3d& level_from_model) {
-  Eigen::Matrix2Xd x(2, static_cast<Eigen::Index>(stations.size()));
-  for (size_t i = 0; i < stations.size(); ++i) {
-    x.col(static_cast<Eigen::Index>(i)) = (level_from_model * stations[i].cam_from_model.OriginInSource()).head<2>();
+bool OnOneLine(const std::vector<input::PreparedPhoto>& photos, const Matrix3d& level_from_model) {
+  Eigen::Matrix2Xd x(2, static_cast<Eigen::Index>(photos.size()));
+  for (size_t i = 0; i < photos.size(); ++i) {
+    x.col(static_cast<Eigen::Index>(i)) = (level_from_model * photos[i].cam_from_model.OriginInSource()).head<2>();
   }
   const Eigen::Matrix2Xd centred = x.colwise() - x.rowwise().mean();
   const Eigen::Matrix2d spread = centred.lazyProduct(centred.transpose());

@@ -17,9 +17,9 @@ namespace skyquilt::prepare::georeference {
 
 // What a fit of tags needs to know of the flight.
 struct TaggedFlight {
-  const std::vector<input::Station>& stations;
+  const std::vector<input::PreparedPhoto>& photos;
   const Track& track;
-  const std::vector<int>& flight;  // of each station
+  const std::vector<int>& flight;  // of each photo
   const PlaceOptions& options;
 };
 
@@ -36,6 +36,6 @@ HeightObservations ObserveHeights(const TaggedFlight& flight, const std::vector<
 // `start` rotated about a point (ENU) and raised, by the first three numbers of a solution for the heights.
 geo::Similarity3d Turned(const geo::Similarity3d& start, const Eigen::Vector3d& point, const Eigen::VectorXd& solution);
 // All photos on about one straight line: ratio of the smaller to the larger horizontal spread of the positions below 5 %.
-bool OnOneLine(const std::vector<input::Station>& stations, const Eigen::Matrix3d& level_from_model);
+bool OnOneLine(const std::vector<input::PreparedPhoto>& photos, const Eigen::Matrix3d& level_from_model);
 
 }  // namespace skyquilt::prepare::georeference

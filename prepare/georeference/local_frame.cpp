@@ -21,18 +21,18 @@ Eigen::Vector3d MedianPoint(const std::vector<Eigen::Vector3d>& points) {
 
 }  // namespace
 
-geo::Similarity3d LocalFrame(const std::vector<input::Station>& stations, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
+geo::Similarity3d LocalFrame(const std::vector<input::PreparedPhoto>& photos, const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
   geo::Similarity3d local_from_model;
-  if (stations.empty()) return local_from_model;
+  if (photos.empty()) return local_from_model;
   std::vector<Eigen::Vector3d> centres;
-  centres.reserve(stations.size());
-  for (const input::Station& station : stations) centres.push_back(station.cam_from_model.OriginInSource());
+  centres.reserve(photos.size());
+  for (const input::PreparedPhoto& photo : photos) centres.push_back(photo.cam_from_model.OriginInSource());
   const Eigen::Vector3d origin = MedianPoint(points.empty() ? centres : points);
   std::vector<double> depths;
-  for (const input::Station& station : stations) {
+  for (const input::PreparedPhoto& photo : photos) {
     std::vector<double> own;
     for (const Eigen::Vector3d& x : points) {
-      const double depth = (station.cam_from_model * x).z();
+      const double depth = (photo.cam_from_model * x).z();
       if (depth > 0.0) own.push_back(depth);
     }
     if (!own.empty()) depths.push_back(base::Median(own));

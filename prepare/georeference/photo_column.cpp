@@ -22,10 +22,10 @@ constexpr double kSameCourse = 0.95;  // correlation of tagged heights with plac
 constexpr size_t kFewestHeights = 4;
 
 // The tags in ENU about their middle, heights as far as they say anything.
-std::vector<Tag> TagsOf(const std::vector<input::Station>& stations) {
-  std::vector<size_t> order(stations.size());
+std::vector<Tag> TagsOf(const std::vector<input::PreparedPhoto>& photos) {
+  std::vector<size_t> order(photos.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  return CollectTags(stations, order, MedianPosition(stations), JudgeHeights(stations));
+  return CollectTags(photos, order, MedianPosition(photos), JudgeHeights(photos));
 }
 
 // Pearson's, over the tags with a height; 0 for fewer than kFewestHeights.
@@ -52,12 +52,12 @@ double CorrelationWithHeights(const std::vector<Tag>& tags, const std::vector<Ve
 
 }  // namespace
 
-bool CamerasAboveOneAnother(const std::vector<input::Station>& stations, const Gravity& gravity) {
-  const std::vector<Tag> tags = TagsOf(stations);
+bool CamerasAboveOneAnother(const std::vector<input::PreparedPhoto>& photos, const Gravity& gravity) {
+  const std::vector<Tag> tags = TagsOf(photos);
   std::vector<Vector3d> centres;
   Vector3d mean = Vector3d::Zero();
   for (const Tag& tag : tags) {
-    centres.push_back(stations[tag.station].cam_from_model.OriginInSource());
+    centres.push_back(photos[tag.photo].cam_from_model.OriginInSource());
     mean += centres.back() / static_cast<double>(tags.size());
   }
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -69,8 +69,8 @@ bool CamerasAboveOneAnother(const std::vector<input::Station>& stations, const G
   return vertical || std::abs(CorrelationWithHeights(tags, centres, axis)) >= kSameCourse;
 }
 
-bool TagsFormColumn(const std::vector<input::Station>& stations) {
-  std::vector<Tag> tags = TagsOf(stations);
+bool TagsFormColumn(const std::vector<input::PreparedPhoto>& photos) {
+  std::vector<Tag> tags = TagsOf(photos);
   std::erase_if(tags, [](const Tag& tag) { return !std::isfinite(tag.x_in_enu.z()); });
   Vector3d mean = Vector3d::Zero(), squares = Vector3d::Zero();
   for (const Tag& tag : tags) mean += tag.x_in_enu / static_cast<double>(tags.size());
@@ -83,11 +83,11 @@ survey::Problem ColumnProblem() {
                  "Add photos that were taken several metres to the side, such as a second column, then run the same command with --restart");
 }
 
-survey::Problem OnePlaceProblem(const std::vector<input::Station>& stations, const Gravity& gravity) {
-  const bool equal = AllTagsEqual(stations);
+survey::Problem OnePlaceProblem(const std::vector<input::PreparedPhoto>& photos, const Gravity& gravity) {
+  const bool equal = AllTagsEqual(photos);
   // Where the tags' heights say nothing, the cameras decide: in a column even right tags would lie at one place.
-  const bool same_height = equal && JudgeHeights(stations) != HeightTags::kUnknown;
-  if (!same_height && CamerasAboveOneAnother(stations, gravity)) return ColumnProblem();
+  const bool same_height = equal && JudgeHeights(photos) != HeightTags::kUnknown;
+  if (!same_height && CamerasAboveOneAnother(photos, gravity)) return ColumnProblem();
   return NoPlace("equal_tags",
                  equal ? "all GPS tags are at one place"
                        : "all GPS tags have one latitude and longitude and differ in height alone, though the cameras were not above one another",

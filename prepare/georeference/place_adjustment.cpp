@@ -80,7 +80,7 @@ class Solver {
     std::vector<double> horizontal, vertical;
     for (size_t k = 0; k < n; ++k) {
       const Tag& tag = input_.tags[k];
-      const TrackPoint point = input_.track.Before(tag.station, lag_s_);
+      const TrackPoint point = input_.track.Before(tag.photo, lag_s_);
       arm_[k] = turn * (point.position - input_.middle_in_model);
       velocity_[k] = turn * point.velocity;
       residual_[k] = arm_[k] + position_ - tag.x_in_enu;

@@ -78,25 +78,23 @@ control::ControlPoints ReadControlPoints(const control::ControlFiles& given, con
   return control;
 }
 
-survey::ControlFit PlaceByControl(const ControlInput& input, survey::ColmapModel& model, std::vector<input::Station>& stations,
+survey::ControlFit PlaceByControl(const ControlInput& input, survey::ColmapModel& model, std::vector<input::PreparedPhoto>& photos,
                                   Georeference& georeference, base::ThreadPool& threads) {
   if (input.control.points.empty()) return {};
   const survey::ColmapObservations observations =
       input.has_observations ? survey::ReadColmapObservations(input.model_folder) : survey::ColmapObservations();
   control::ControlPoints control = input.control;
   const survey::ColmapObservations no_ties;
-  SettleReading({.model = model, .observations = no_ties, .stations = stations, .image_of_station = input.image_of_station, .control = input.control},
-                control);
-  control::ControlJob job{
-      .model = model, .observations = observations, .stations = stations, .image_of_station = input.image_of_station, .control = control};
+  SettleReading({.model = model, .observations = no_ties, .photos = photos, .control = input.control}, control);
+  control::ControlJob job{.model = model, .observations = observations, .photos = photos, .control = control};
   if (georeference.ok)
     job.otherwise = control::PlaceWithoutControl{georeference.origin, georeference.enu_from_model, georeference.fit.accuracy, input.exact};
   const control::PlacedByControl placed = control::FitControl(job, threads);
   LogControl(placed.fit);
   if (placed.fit.placed) {
-    for (size_t i = 0; i < stations.size(); ++i) stations[i].cam_from_model = model.images[input.image_of_station[i]].cam_from_world;
+    for (input::PreparedPhoto& photo : photos) photo.cam_from_model = model.images[photo.image].cam_from_world;
     // Tags are compared only: problems of a place that they would have given no longer matter.
-    georeference = KeepExactFrame(stations, placed.origin, input.options);
+    georeference = KeepExactFrame(photos, placed.origin, input.options);
     georeference.fit.accuracy = placed.accuracy;
     georeference.fit.scale = placed.scale;
     georeference.problems = BentByControl(placed.fit);

@@ -12,7 +12,7 @@
 #include "prepare/georeference/georeference.h"
 #include "prepare/georeference/place_options.h"
 #include "prepare/input/photo_files.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::georeference {
 
@@ -23,16 +23,15 @@ control::ControlPoints ReadControlPoints(const control::ControlFiles& given, con
 struct ControlInput {
   const PlaceOptions& options;
   const control::ControlPoints& control;
-  const std::vector<size_t>& image_of_station;  // index into the model's images, see ControlJob
-  std::filesystem::path model_folder;           // where the model's observations are read from
-  bool has_observations = false;                // they are there, and are features of photos
-  bool exact = false;                           // the frame of the model is the true one
+  std::filesystem::path model_folder;  // where the model's observations are read from
+  bool has_observations = false;       // they are there, and are features of photos
+  bool exact = false;                  // the frame of the model is the true one
 };
 
-// Does nothing without control points. When the control points place the survey, model, stations and geo-reference are those of the new frame
+// Does nothing without control points. When the control points place the survey, model, photos and geo-reference are those of the new frame
 // afterwards; else the problems of the geo-reference say why not. Throws base::InputError when the survey has no place without control points and too
 // few of them can be used.
-survey::ControlFit PlaceByControl(const ControlInput& input, survey::ColmapModel& model, std::vector<input::Station>& stations,
+survey::ControlFit PlaceByControl(const ControlInput& input, survey::ColmapModel& model, std::vector<input::PreparedPhoto>& photos,
                                   Georeference& georeference, base::ThreadPool& threads);
 
 // Warns when the errors of the points' heights form a bowl or a dome that their accuracies do not explain; nothing when there are too few points.

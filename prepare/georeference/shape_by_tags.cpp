@@ -22,36 +22,35 @@ namespace {
 
 constexpr double kBendSigmas = 3.0;
 
-bool Agrees(const Georeference& georeference, size_t station) {
-  return georeference.inlier[station] != 0;
+bool Agrees(const Georeference& georeference, size_t photo) {
+  return georeference.inlier[photo] != 0;
 }
 
-bool MostAreRtk(const std::vector<input::Station>& stations) {
-  const auto tagged = std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value(); });
-  const auto rtk =
-      std::count_if(stations.begin(), stations.end(), [](const input::Station& station) { return station.gps.has_value() && station.rtk; });
+bool MostAreRtk(const std::vector<input::PreparedPhoto>& photos) {
+  const auto tagged = std::count_if(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.gps.has_value(); });
+  const auto rtk = std::count_if(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.gps.has_value() && photo.rtk; });
   return 2 * rtk > tagged;
 }
 
-Dome BendOf(const std::vector<input::Station>& stations, const Georeference& georeference) {
-  std::vector<size_t> order(stations.size());
+Dome BendOf(const std::vector<input::PreparedPhoto>& photos, const Georeference& georeference) {
+  std::vector<size_t> order(photos.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  const auto time = [&](size_t i) { return stations[i].time_s.value_or(std::numeric_limits<double>::infinity()); };
+  const auto time = [&](size_t i) { return photos[i].file.tags.capture_time_s.value_or(std::numeric_limits<double>::infinity()); };
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return time(a) < time(b); });
   std::vector<HeightDifference> differences;
   for (const size_t i : order) {
     if (!Agrees(georeference, i)) continue;
-    const Eigen::Vector3d centre = georeference.enu_from_model * stations[i].cam_from_model.OriginInSource();
+    const Eigen::Vector3d centre = georeference.enu_from_model * photos[i].cam_from_model.OriginInSource();
     differences.push_back({centre.head<2>(), georeference.residual_m[i].z()});
   }
   return FitDome(differences);
 }
 
 // Those that agree, with what the fit adds to them.
-std::vector<input::Station> Corrected(const std::vector<input::Station>& stations, const Georeference& georeference) {
+std::vector<input::PreparedPhoto> Corrected(const std::vector<input::PreparedPhoto>& photos, const Georeference& georeference) {
   const geo::EnuFrame frame(georeference.origin);
-  std::vector<input::Station> corrected = stations;
-  for (size_t i = 0; i < stations.size(); ++i) {
+  std::vector<input::PreparedPhoto> corrected = photos;
+  for (size_t i = 0; i < photos.size(); ++i) {
     std::optional<geo::Geodetic>& tag = corrected[i].gps;
     if (!Agrees(georeference, i)) tag.reset();
     if (!tag) continue;
@@ -68,25 +67,24 @@ struct ShapeStart {
   const ShapeInput& input;
   const survey::ColmapModel& model;
   const survey::ColmapObservations& observations;
-  const std::vector<input::Station>& stations;
+  const std::vector<input::PreparedPhoto>& photos;
   const Georeference& georeference;
 };
 
 // The model after an adjustment to the tags, placed on Earth.
 struct Shaped {
   survey::ColmapModel model;
-  std::vector<input::Station> stations;
+  std::vector<input::PreparedPhoto> photos;
   Georeference georeference;
   double error_before = 0.0, error_after = 0.0;
 };
 
 // Nothing when there is no adjustment; the log says why.
 std::optional<Shaped> AdjustShape(const ShapeStart& start, bool hold_focal, base::ThreadPool& threads) {
-  Shaped shaped{.model = start.model, .stations = start.stations, .georeference = {}};
+  Shaped shaped{.model = start.model, .photos = start.photos, .georeference = {}};
   const control::AdjustedToTags result = control::AdjustToTags({.model = shaped.model,
                                                                 .observations = start.observations,
-                                                                .stations = Corrected(start.stations, start.georeference),
-                                                                .image_of_station = start.input.image_of_station,
+                                                                .photos = Corrected(start.photos, start.georeference),
                                                                 .origin = start.georeference.origin,
                                                                 .enu_from_model = start.georeference.enu_from_model,
                                                                 .hold_focal = hold_focal},
@@ -95,29 +93,27 @@ std::optional<Shaped> AdjustShape(const ShapeStart& start, bool hold_focal, base
     base::LogInfo("the poses are not adjusted to the GPS tags: {}", result.reason);
     return std::nullopt;
   }
-  for (size_t i = 0; i < shaped.stations.size(); ++i) {
-    shaped.stations[i].cam_from_model = shaped.model.images[start.input.image_of_station[i]].cam_from_world;
-  }
+  for (input::PreparedPhoto& photo : shaped.photos) photo.cam_from_model = shaped.model.images[photo.image].cam_from_world;
   std::vector<Eigen::Vector3d> points;
   points.reserve(shaped.model.points.size());
   for (const survey::ColmapPoint& point : shaped.model.points) points.push_back(point.x_in_world);
-  shaped.georeference = PlaceOnEarth(shaped.stations, points, start.input.options);
+  shaped.georeference = PlaceOnEarth(shaped.photos, points, start.input.options);
   shaped.error_before = result.error_before;
   shaped.error_after = result.error_after;
   return shaped;
 }
 
-bool HasHeightTags(const std::vector<input::Station>& stations) {
-  return std::any_of(stations.begin(), stations.end(), [](const input::Station& station) { return station.relative_altitude_m.has_value(); });
+bool HasHeightTags(const std::vector<input::PreparedPhoto>& photos) {
+  return std::any_of(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.file.tags.relative_altitude_m.has_value(); });
 }
 
-poses::HeightAboveTakeOff HeightsOf(const survey::ColmapModel& model, const std::vector<input::Station>& stations,
+poses::HeightAboveTakeOff HeightsOf(const survey::ColmapModel& model, const std::vector<input::PreparedPhoto>& photos,
                                     const geo::Similarity3d& enu_from_model, base::ThreadPool& threads) {
   survey::Survey survey;
-  for (const input::Station& station : stations) {
+  for (const input::PreparedPhoto& prepared : photos) {
     survey::Photo& photo = survey.photos.emplace_back();
-    photo.cam_from_enu = geo::TransformCameraWorld(station.cam_from_model, enu_from_model);
-    photo.relative_altitude_m = station.relative_altitude_m;
+    photo.cam_from_enu = geo::TransformCameraWorld(prepared.cam_from_model, enu_from_model);
+    photo.relative_altitude_m = prepared.file.tags.relative_altitude_m;
   }
   survey.points.reserve(model.points.size());
   for (const survey::ColmapPoint& point : model.points) survey.points.emplace_back().x_in_enu = enu_from_model * point.x_in_world;
@@ -146,26 +142,26 @@ std::string LostFocal(const ShapeStart& start, const Shaped& shaped, base::Threa
     const std::optional<poses::FarFocal> far = poses::FindFocalFarFrom(tagged_px, shaped.model);
     return far && !poses::FindFocalFarFrom(tagged_px, start.model) ? far->Text() : "";
   }
-  if (!shaped.georeference.ok || !HasHeightTags(start.stations) || !FocalDriven(start.model, shaped.model)) return "";
-  const poses::HeightAboveTakeOff after = HeightsOf(shaped.model, shaped.stations, shaped.georeference.enu_from_model, threads);
+  if (!shaped.georeference.ok || !HasHeightTags(start.photos) || !FocalDriven(start.model, shaped.model)) return "";
+  const poses::HeightAboveTakeOff after = HeightsOf(shaped.model, shaped.photos, shaped.georeference.enu_from_model, threads);
   if (!after.Differs()) return "";
-  const poses::HeightAboveTakeOff before = HeightsOf(start.model, start.stations, start.georeference.enu_from_model, threads);
+  const poses::HeightAboveTakeOff before = HeightsOf(start.model, start.photos, start.georeference.enu_from_model, threads);
   if (before.Differs()) return "";
   return fmt::format("a height above ground of {:.0f} m, where RelativeAltitude says {:.0f} m", after.found_m, after.tagged_m);
 }
 
 }  // namespace
 
-bool TagsTellTheShape(const std::vector<input::Station>& stations, const Georeference& georeference) {
+bool TagsTellTheShape(const std::vector<input::PreparedPhoto>& photos, const Georeference& georeference) {
   if (!georeference.ok) return false;
-  if (MostAreRtk(stations)) return true;
-  const Dome bend = BendOf(stations, georeference);
+  if (MostAreRtk(photos)) return true;
+  const Dome bend = BendOf(photos, georeference);
   return std::abs(bend.height_m) > std::max(kLeastBend_m, kBendSigmas * bend.sigma_m);
 }
 
-void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vector<input::Station>& stations, Georeference& georeference,
+void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vector<input::PreparedPhoto>& photos, Georeference& georeference,
                  base::ThreadPool& threads) {
-  if (!TagsTellTheShape(stations, georeference)) return;
+  if (!TagsTellTheShape(photos, georeference)) return;
   survey::ColmapObservations observations;
   try {
     observations = survey::ReadColmapObservations(input.model_folder);
@@ -174,7 +170,7 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
     base::LogInfo("the poses are not adjusted to the GPS tags: {}", error.what());
     return;
   }
-  const ShapeStart start{input, model, observations, stations, georeference};
+  const ShapeStart start{input, model, observations, photos, georeference};
   std::optional<Shaped> shaped = AdjustShape(start, false, threads);
   if (!shaped) return;
   std::string lost = LostFocal(start, *shaped, threads);
@@ -189,8 +185,8 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
     }
   }
   Georeference& placed = shaped->georeference;
-  const Dome before = BendOf(stations, georeference);
-  const Dome after = placed.ok ? BendOf(shaped->stations, placed) : Dome();
+  const Dome before = BendOf(photos, georeference);
+  const Dome after = placed.ok ? BendOf(shaped->photos, placed) : Dome();
   if (!placed.ok || placed.fit.n_inliers < georeference.fit.n_inliers ||
       std::abs(after.height_m) > std::abs(before.height_m) + kBendSigmas * after.sigma_m) {
     base::LogInfo("the poses are not adjusted to the GPS tags: fewer tags would agree, or the bend would be larger");
@@ -203,11 +199,8 @@ void ShapeByTags(const ShapeInput& input, survey::ColmapModel& model, std::vecto
       "poses adjusted to the GPS tags: middle above edge against the tags {:+.2f} m, before {:+.2f} m; median error of features {:.2f} px, "
       "before {:.2f} px, at 1600 px",
       after.height_m, before.height_m, shaped->error_after, shaped->error_before);
-  // In place: others point to the images.
-  std::copy(shaped->model.images.begin(), shaped->model.images.end(), model.images.begin());
-  model.cameras = std::move(shaped->model.cameras);
-  model.points = std::move(shaped->model.points);
-  stations = std::move(shaped->stations);
+  model = std::move(shaped->model);
+  photos = std::move(shaped->photos);
   georeference = std::move(placed);
 }
 

@@ -96,14 +96,15 @@ FileOfImage MatchPhotos(const survey::ColmapModel& model, const std::vector<Phot
   return registered;
 }
 
-std::vector<Registered> RegisteredPhotos(const survey::ColmapModel& model, const FileOfImage& file_of_image) {
-  std::vector<Registered> registered;
-  for (const survey::ColmapImage& image : model.images) {
-    if (const auto file = file_of_image.find(image.id); file != file_of_image.end()) registered.push_back({&image, file->second});
+std::vector<PreparedPhoto> PreparePhotos(const survey::ColmapModel& model, const FileOfImage& file_of_image, const std::vector<PhotoFile>& files) {
+  std::map<size_t, size_t> image_of_file;  // files are in name order
+  for (size_t i = 0; i < model.images.size(); ++i) {
+    if (const auto file = file_of_image.find(model.images[i].id); file != file_of_image.end()) image_of_file.emplace(file->second, i);
   }
-  // Files are in name order.
-  std::sort(registered.begin(), registered.end(), [](const Registered& a, const Registered& b) { return a.file < b.file; });
-  return registered;
+  std::vector<PreparedPhoto> photos;
+  photos.reserve(image_of_file.size());
+  for (const auto& [file, image] : image_of_file) photos.push_back(PreparePhoto(files[file], image, model.images[image].cam_from_world));
+  return photos;
 }
 
 std::string FewNames(const std::vector<std::string>& names) {

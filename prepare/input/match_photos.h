@@ -10,14 +10,9 @@
 
 #include "core/survey/colmap_model.h"
 #include "prepare/input/photo_files.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::input {
-
-// A photo of the model together with its file. Valid until the model's list of images changes.
-struct Registered {
-  const survey::ColmapImage* image;
-  size_t file;  // index into the usable photos
-};
 
 // Index into the usable photos by the ids of images.
 using FileOfImage = std::map<uint32_t, size_t>;
@@ -30,8 +25,8 @@ FileOfImage FindPhotos(const survey::ColmapModel& model, const std::vector<Photo
 // base::InputError when fewer than kMinPhotos remain; `model_folder` and `photo_root` are for messages.
 FileOfImage MatchPhotos(const survey::ColmapModel& model, const std::vector<PhotoFile>& files, const std::filesystem::path& model_folder,
                         const std::filesystem::path& photo_root);
-// Those that the model has now, in name order.
-std::vector<Registered> RegisteredPhotos(const survey::ColmapModel& model, const FileOfImage& file_of_image);
+// Those that the model has now, in name order, with its poses and the places that their tags say.
+std::vector<PreparedPhoto> PreparePhotos(const survey::ColmapModel& model, const FileOfImage& file_of_image, const std::vector<PhotoFile>& files);
 
 // The first of them, for messages.
 std::string FewNames(const std::vector<std::string>& names);

@@ -14,8 +14,9 @@ struct PhotoFile {
   std::string name;  // relative to the root, '/' separated
   int width = 0;     // pixels, as stored
   int height = 0;
-  survey::PhotoTags tags;
+  survey::PhotoTags tags = {};
   bool converted = false;  // COLMAP reads a copy of 8 bits without these tags (plain_photos.h)
+  std::string mask = {};   // path of its mask (masks/masks.h); empty: none
 };
 
 struct PhotoSet {

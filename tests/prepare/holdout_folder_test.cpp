@@ -52,7 +52,7 @@ void ChangeHeldOut(test::MadeControl& made) {
     survey::ColmapImage& image = made.model.images[i];
     if (!HeldOutImages().contains(image.id)) continue;
     image.cam_from_world.translation += Eigen::Vector3d(3.0, -2.0, 5.0);
-    made.stations[i].gps = frame.GeodeticFromEnu(frame.EnuFromGeodetic(*made.stations[i].gps) + Eigen::Vector3d(4.0, 3.0, 2.0));
+    made.photos[i].gps = frame.GeodeticFromEnu(frame.EnuFromGeodetic(*made.photos[i].gps) + Eigen::Vector3d(4.0, 3.0, 2.0));
     double k = 0.0;
     for (survey::ColmapObservation& seen : made.observations.at(image.id)) {
       k += 1.0;
@@ -95,11 +95,11 @@ class HoldoutFolder : public ::testing::Test {
     fs::create_directories(folder / "images");
     fs::create_directories(folder / "sparse/0");
     const image::Image8 pixels(1600, 1200, 3, 100);
-    for (size_t i = 0; i < made.stations.size(); ++i) {
-      const fs::path file = folder / "images" / made.stations[i].name;
+    for (size_t i = 0; i < made.photos.size(); ++i) {
+      const fs::path file = folder / "images" / made.photos[i].file.name;
       image::SaveJpeg(pixels, file, 50);
       survey::PhotoTags tags;
-      tags.gps = made.stations[i].gps;
+      tags.gps = made.photos[i].gps;
       tags.absolute_altitude_m = tags.gps->height_m;
       tags.capture_time_s = 1466699519.0 + 5.0 * static_cast<double>(i);
       survey::WritePhotoTags(tags, file);

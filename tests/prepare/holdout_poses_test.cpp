@@ -247,26 +247,27 @@ TEST(HoldoutPoses, PhotosThatOnlyHeldOutOnesTieToTheRestAreNotAdjusted) {
 
 TEST(HoldoutPoses, TagsOfResectedPhotosAreComparedAsTheirNeighbours) {
   const geo::EnuFrame frame({47.0, 8.0, 400.0});
-  std::vector<input::Station> stations(5);
-  for (size_t i = 0; i < stations.size(); ++i) {
+  std::vector<input::PreparedPhoto> photos(5);
+  for (size_t i = 0; i < photos.size(); ++i) {
     const Eigen::Vector3d centre(10.0 * static_cast<double>(i), 0.0, 50.0);
-    stations[i].cam_from_model = {Eigen::Quaterniond::Identity(), -centre};
-    stations[i].gps = frame.GeodeticFromEnu(centre + Eigen::Vector3d(0.0, 1.0, -2.0));
-    stations[i].time_s = 5.0 * static_cast<double>(i);
+    photos[i].file.name = std::to_string(i);
+    photos[i].cam_from_model = {Eigen::Quaterniond::Identity(), -centre};
+    photos[i].gps = frame.GeodeticFromEnu(centre + Eigen::Vector3d(0.0, 1.0, -2.0));
+    photos[i].file.tags.capture_time_s = 5.0 * static_cast<double>(i);
   }
   // 0 was taken after a pause, just before 4. The tag of 3 has no height.
-  stations[0].time_s = 1000.0;
-  stations[4].time_s = 1004.0;
-  stations[3].gps->height_m = std::numeric_limits<double>::quiet_NaN();
+  photos[0].file.tags.capture_time_s = 1000.0;
+  photos[4].file.tags.capture_time_s = 1004.0;
+  photos[3].gps->height_m = std::numeric_limits<double>::quiet_NaN();
   georeference::Georeference georeference;
   georeference.ok = true;
   georeference.origin = frame.origin();
-  georeference.flight = {0, 0, 1};  // of stations 1, 2 and 4
+  georeference.flight = {0, 0, 1};  // of photos 1, 2 and 4
   georeference.correction_m = {{0.0, -1.0, 0.0}, {0.0, -1.0, 0.5}, {0.0, -0.5, 2.0}};
   georeference.residual_m.assign(3, Eigen::Vector3d(0.1, 0.1, 0.1));
   georeference.inlier.assign(3, 1);
   georeference::Georeference local = georeference;
-  AddResected(stations, {1, 0, 0, 1, 0}, georeference);
+  AddResected(photos, {"0", "3"}, georeference);
   EXPECT_EQ(georeference.flight, (std::vector<int>{1, 0, 0, 0, 1}));
   EXPECT_EQ(georeference.inlier, (std::vector<char>{0, 1, 1, 0, 1}));
   EXPECT_EQ(georeference.correction_m[0], Eigen::Vector3d(0.0, -0.5, 2.0));
@@ -277,7 +278,7 @@ TEST(HoldoutPoses, TagsOfResectedPhotosAreComparedAsTheirNeighbours) {
   EXPECT_TRUE(std::isnan(georeference.residual_m[3].z()));
 
   local.ok = false;
-  AddResected(stations, {1, 0, 0, 1, 0}, local);
+  AddResected(photos, {"0", "3"}, local);
   EXPECT_TRUE(std::isnan(local.residual_m[0].x()));
   EXPECT_EQ(local.correction_m[0], Eigen::Vector3d::Zero());
 }

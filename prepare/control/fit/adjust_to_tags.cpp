@@ -50,11 +50,7 @@ double Moved(const std::vector<bundle::BundlePhoto>& before, const std::vector<b
 AdjustedToTags AdjustToTags(const TagJob& job, base::ThreadPool& threads) {
   AdjustedToTags result;
   const ControlPoints no_points;
-  ControlBundle marked = MakeControlBundle({.model = job.model,
-                                            .observations = job.observations,
-                                            .stations = job.stations,
-                                            .image_of_station = job.image_of_station,
-                                            .control = no_points});
+  ControlBundle marked = MakeControlBundle({.model = job.model, .observations = job.observations, .photos = job.photos, .control = no_points});
   if (!marked.known_lenses) {
     result.reason = "the camera model has coefficients that the adjustment does not know";
     return result;
@@ -72,7 +68,7 @@ AdjustedToTags AdjustToTags(const TagJob& job, base::ThreadPool& threads) {
   base::Progress progress("adjust to tags", kRounds * kUsualIterations, "iterations");
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Vector3d shift;
-    if (!UseTagScatter(job.stations, job.image_of_station, frame, marked.bundle, &shift)) {
+    if (!UseTagScatter(job.photos, frame, marked.bundle, &shift)) {
       result.reason = "too few GPS tags";
       return result;
     }

@@ -11,15 +11,14 @@
 #include "core/geo/geodetic.h"
 #include "core/geo/transform.h"
 #include "core/survey/colmap_model.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::control {
 
 struct TagJob {
   survey::ColmapModel& model;  // in any frame; see AdjustToTags
   const survey::ColmapObservations& observations;
-  const std::vector<input::Station>& stations;  // with the tags to use: corrected ones, without those that contradict
-  const std::vector<size_t>& image_of_station;  // index into model.images
+  const std::vector<input::PreparedPhoto>& photos;  // with the tags to use: corrected ones, without those that contradict
   geo::Geodetic origin;
   geo::Similarity3d enu_from_model;  // about where it belongs
   bool hold_focal = false;           // focal lengths stay those of the model

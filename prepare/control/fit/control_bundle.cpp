@@ -106,11 +106,10 @@ class BundleBuilder {
   }
 
   void AddMarks() {
-    SKYQUILT_CHECK(job_.image_of_station.size() == job_.stations.size(), "one image per station");
     std::map<std::string, uint32_t> photo_of_name;
-    for (size_t i = 0; i < job_.stations.size(); ++i) {
-      SKYQUILT_CHECK(job_.image_of_station[i] < job_.model.images.size(), job_.stations[i].name);
-      photo_of_name.emplace(job_.stations[i].name, static_cast<uint32_t>(job_.image_of_station[i]));
+    for (const input::PreparedPhoto& photo : job_.photos) {
+      SKYQUILT_CHECK(photo.image < job_.model.images.size(), photo.file.name);
+      photo_of_name.emplace(photo.file.name, static_cast<uint32_t>(photo.image));
     }
     for (const ControlPoint& point : job_.control.points) {
       struct Mark {

@@ -109,7 +109,7 @@ class Fitter {
     NotAdjusted not_adjusted = WhyNotAdjusted();
     if (not_adjusted == NotAdjusted::kNo) {
       Vector3d shift = Vector3d::Zero();
-      const bool tagged = job_.use_tags && UseTagScatter(job_.stations, job_.image_of_station, frame, bundle_, &shift);
+      const bool tagged = job_.use_tags && UseTagScatter(job_.photos, frame, bundle_, &shift);
       base::Progress progress("adjust to control points", kUsualIterations, "iterations");
       adjustment = AdjustWithControl(marked_, states_, tagged ? &shift : nullptr, threads_, [&] { progress.Advance(); });
       progress.Finish();

@@ -16,7 +16,7 @@
 #include "core/survey/control_fit.h"
 #include "core/survey/geo_fit.h"
 #include "prepare/control/reading/control_points.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::control {
 
@@ -35,8 +35,7 @@ struct ControlJob {
   survey::ColmapModel& model;  // in any frame; see FitControl
   // Of the model's points; empty when the model has none: then there is no adjustment.
   const survey::ColmapObservations& observations;
-  const std::vector<input::Station>& stations;  // the photos that marks may be on, by Station::name
-  const std::vector<size_t>& image_of_station;  // index into model.images
+  const std::vector<input::PreparedPhoto>& photos;  // that marks may be on
   const ControlPoints& control;
   std::optional<PlaceWithoutControl> otherwise = {};
   double mark_sigma_px = 0.5;  // > 0, per axis, pixels of the stored photo; corrected by what the marks show
@@ -55,7 +54,7 @@ struct PlacedByControl {
 
 // When fit.placed, the model's poses, cameras and points have been changed: they are in ENU metres about `origin`, the middle of the control points.
 // Else too few control points can be used, the model is as it was, and points are compared with the place without control. Throws base::InputError
-// that names the control file when there is no other place, std::logic_error for stations without image, base::Interrupted. The same input gives the
+// that names the control file when there is no other place, std::logic_error for photos without image, base::Interrupted. The same input gives the
 // same bits, whatever the number of threads.
 PlacedByControl FitControl(const ControlJob& job, base::ThreadPool& threads);
 

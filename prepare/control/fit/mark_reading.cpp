@@ -11,8 +11,7 @@ constexpr double kAgreeing = 6.0;
 
 // Open marks that agree with others when `control` has the pixels of one reading. `job.control` says which are open.
 size_t CountAgreeing(const ControlJob& job, const ControlPoints& control) {
-  ControlBundle marked = MakeControlBundle(
-      {.model = job.model, .observations = job.observations, .stations = job.stations, .image_of_station = job.image_of_station, .control = control});
+  ControlBundle marked = MakeControlBundle({.model = job.model, .observations = job.observations, .photos = job.photos, .control = control});
   size_t n = 0;
   for (size_t i = 0; i < control.points.size(); ++i) {
     bundle::TriangulateTrack(marked.bundle, marked.TrackOfPoint(i), kAgreeing);

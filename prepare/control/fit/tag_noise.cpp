@@ -18,20 +18,22 @@ struct TaggedPhoto {
 };
 
 // In the order of time where it is known.
-std::vector<TaggedPhoto> TaggedPhotos(const std::vector<input::Station>& stations, const std::vector<size_t>& image_of_station,
-                                      const geo::EnuFrame& frame, const bundle::BundleProblem& bundle) {
-  std::vector<size_t> order(stations.size());
+std::vector<TaggedPhoto> TaggedPhotos(const std::vector<input::PreparedPhoto>& photos, const geo::EnuFrame& frame,
+                                      const bundle::BundleProblem& bundle) {
+  std::vector<size_t> order(photos.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  const bool timed = std::all_of(stations.begin(), stations.end(), [](const input::Station& station) { return station.time_s.has_value(); });
-  if (timed) std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return *stations[a].time_s < *stations[b].time_s; });
+  const bool timed =
+      std::all_of(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.file.tags.capture_time_s.has_value(); });
+  const auto time_s = [&](size_t i) { return *photos[i].file.tags.capture_time_s; };
+  if (timed) std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return time_s(a) < time_s(b); });
   std::vector<TaggedPhoto> tagged;
   for (const size_t i : order) {
-    if (!stations[i].gps) continue;
-    geo::Geodetic place = *stations[i].gps;
+    if (!photos[i].gps) continue;
+    geo::Geodetic place = *photos[i].gps;
     const bool has_height = std::isfinite(place.height_m);
     if (!has_height) place.height_m = frame.origin().height_m;
     TaggedPhoto one;
-    one.photo = static_cast<uint32_t>(image_of_station[i]);
+    one.photo = static_cast<uint32_t>(photos[i].image);
     one.tag = frame.EnuFromGeodetic(place);
     one.difference = one.tag - bundle.photos[one.photo].centre;
     if (!one.tag.allFinite()) continue;
@@ -69,9 +71,9 @@ AxisNoise NoiseOf(const std::vector<TaggedPhoto>& tagged, int axis) {
 
 }  // namespace
 
-bool UseTagScatter(const std::vector<input::Station>& stations, const std::vector<size_t>& image_of_station, const geo::EnuFrame& frame,
-                   bundle::BundleProblem& bundle, Eigen::Vector3d* shift) {
-  const std::vector<TaggedPhoto> tagged = TaggedPhotos(stations, image_of_station, frame, bundle);
+bool UseTagScatter(const std::vector<input::PreparedPhoto>& photos, const geo::EnuFrame& frame, bundle::BundleProblem& bundle,
+                   Eigen::Vector3d* shift) {
+  const std::vector<TaggedPhoto> tagged = TaggedPhotos(photos, frame, bundle);
   if (tagged.size() < kLeastTags) return false;
   Eigen::Vector3d sigma;
   for (int axis = 0; axis < 3; ++axis) {

@@ -9,7 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
 #include "prepare/georeference/place_problems.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 #include "prepare/poses/focal_check.h"
 #include "prepare/poses/seed/seed_rotation.h"
 

@@ -19,13 +19,13 @@ constexpr double kSamePlace_m = 1.0;
 constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
 
 // The file, or the one of most of them, that most positions come from; empty: the photos' own tags.
-std::string PositionFile(const std::vector<input::Station>& stations) {
+std::string PositionFile(const std::vector<input::PreparedPhoto>& photos) {
   std::map<std::string, size_t> count;
   size_t n_gps = 0;
-  for (const input::Station& station : stations) {
-    if (!station.gps) continue;
+  for (const input::PreparedPhoto& photo : photos) {
+    if (!photo.gps) continue;
     ++n_gps;
-    if (!station.position_file.empty()) ++count[station.position_file];
+    if (!photo.file.tags.position_file.empty()) ++count[photo.file.tags.position_file];
   }
   size_t n_of_files = 0, most = 0;
   std::string found;
@@ -45,25 +45,25 @@ bool HeightsVary(const std::vector<double>& heights_m) {
   return *high - *low > kSameHeight_m;
 }
 
-HeightTags JudgeHeights(const std::vector<input::Station>& stations) {
+HeightTags JudgeHeights(const std::vector<input::PreparedPhoto>& photos) {
   std::vector<double> tagged, relative;
   size_t n_gps = 0;
-  for (const input::Station& station : stations) {
-    if (!station.gps) continue;
+  for (const input::PreparedPhoto& photo : photos) {
+    if (!photo.gps) continue;
     ++n_gps;
-    if (std::isfinite(station.gps->height_m)) tagged.push_back(station.gps->height_m);
-    if (station.relative_altitude_m) relative.push_back(*station.relative_altitude_m);
+    if (std::isfinite(photo.gps->height_m)) tagged.push_back(photo.gps->height_m);
+    if (photo.file.tags.relative_altitude_m) relative.push_back(*photo.file.tags.relative_altitude_m);
   }
   if (HeightsVary(tagged)) return HeightTags::kTagged;
   const bool all_zero = std::all_of(relative.begin(), relative.end(), [](double height_m) { return height_m == 0.0; });
   return 2 * relative.size() > n_gps && !all_zero ? HeightTags::kRelative : HeightTags::kUnknown;
 }
 
-bool TagsAboveOneAnother(const std::vector<input::Station>& stations) {
+bool TagsAboveOneAnother(const std::vector<input::PreparedPhoto>& photos) {
   std::optional<geo::EnuFrame> frame;
-  for (const input::Station& station : stations) {
-    if (!station.gps) continue;
-    const geo::Geodetic place{station.gps->latitude_deg, station.gps->longitude_deg, 0.0};
+  for (const input::PreparedPhoto& photo : photos) {
+    if (!photo.gps) continue;
+    const geo::Geodetic place{photo.gps->latitude_deg, photo.gps->longitude_deg, 0.0};
     if (!frame) {
       frame.emplace(place);
     } else if (!(frame->EnuFromGeodetic(place).norm() <= kSamePlace_m)) {
@@ -73,14 +73,14 @@ bool TagsAboveOneAnother(const std::vector<input::Station>& stations) {
   return true;
 }
 
-bool AllTagsEqual(const std::vector<input::Station>& stations) {
-  if (!TagsAboveOneAnother(stations)) return false;
-  const HeightTags heights = JudgeHeights(stations);
+bool AllTagsEqual(const std::vector<input::PreparedPhoto>& photos) {
+  if (!TagsAboveOneAnother(photos)) return false;
+  const HeightTags heights = JudgeHeights(photos);
   if (heights == HeightTags::kUnknown) return true;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const input::Station& station : stations) {
-    if (!station.gps) continue;
-    const double height_m = heights == HeightTags::kTagged ? station.gps->height_m : station.relative_altitude_m.value_or(kNoHeight);
+  for (const input::PreparedPhoto& photo : photos) {
+    if (!photo.gps) continue;
+    const double height_m = heights == HeightTags::kTagged ? photo.gps->height_m : photo.file.tags.relative_altitude_m.value_or(kNoHeight);
     if (!std::isfinite(height_m)) continue;
     low = std::min(low, height_m);
     high = std::max(high, height_m);
@@ -88,7 +88,7 @@ bool AllTagsEqual(const std::vector<input::Station>& stations) {
   return !(high - low > kSamePlace_m);
 }
 
-std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<input::Station>& stations) {
+std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<input::PreparedPhoto>& photos) {
   struct Kind {
     const char* code;
     const char* finding;
@@ -120,21 +120,21 @@ std::vector<CoordinateFault> PossibleCoordinateFaults(const std::vector<input::S
        [](const geo::Geodetic& p) {
          return geo::Geodetic{p.latitude_deg, -p.longitude_deg, p.height_m};
        }}};
-  const std::string file = PositionFile(stations);
+  const std::string file = PositionFile(photos);
   std::vector<CoordinateFault> faults;
   for (const Kind& kind : kinds) {
-    CoordinateFault fault{.problem = {.code = kind.code, .finding = kind.finding, .advice = kind.advice, .about_place = true}, .repaired = stations};
+    CoordinateFault fault{.problem = {.code = kind.code, .finding = kind.finding, .advice = kind.advice, .about_place = true}, .repaired = photos};
     if (!file.empty()) {
       fault.problem.finding = std::string(kind.of_file) + file + ": read " + kind.otherwise + ", its positions fit those of the cameras";
       fault.problem.advice =
           std::string(kind.repair_file) + ", or remove the file to use the photos' own tags, then run the same command with --restart";
     }
     bool possible = true;
-    for (input::Station& station : fault.repaired) {
-      if (!station.gps) continue;
-      const geo::Geodetic place = kind.repair(*station.gps);
+    for (input::PreparedPhoto& photo : fault.repaired) {
+      if (!photo.gps) continue;
+      const geo::Geodetic place = kind.repair(*photo.gps);
       possible = possible && std::abs(place.latitude_deg) <= 90.0;
-      station.gps = geo::Geodetic{place.latitude_deg, geo::WrapLongitudeDeg(place.longitude_deg), place.height_m};
+      photo.gps = geo::Geodetic{place.latitude_deg, geo::WrapLongitudeDeg(place.longitude_deg), place.height_m};
     }
     if (possible) faults.push_back(std::move(fault));
   }

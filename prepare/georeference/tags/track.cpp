@@ -5,12 +5,12 @@
 
 namespace skyquilt::prepare::georeference {
 
-Track::Track(const std::vector<input::Station>& stations, const std::vector<int>& flight) : flight_(flight), order_(stations.size()) {
+Track::Track(const std::vector<input::PreparedPhoto>& photos, const std::vector<int>& flight) : flight_(flight), order_(photos.size()) {
   size_t n_timed = 0;
-  for (const input::Station& station : stations) {
-    centre_.push_back(station.cam_from_model.OriginInSource());
-    time_s_.push_back(station.time_s);
-    n_timed += station.time_s ? 1 : 0;
+  for (const input::PreparedPhoto& photo : photos) {
+    centre_.push_back(photo.cam_from_model.OriginInSource());
+    time_s_.push_back(photo.file.tags.capture_time_s);
+    n_timed += photo.file.tags.capture_time_s ? 1 : 0;
   }
   std::iota(order_.begin(), order_.end(), size_t{0});
   std::stable_sort(order_.begin(), order_.end(), [&](size_t a, size_t b) {
@@ -31,8 +31,8 @@ Track::Track(const std::vector<input::Station>& stations, const std::vector<int>
     if (!nodes.empty() && (centre_[i] - nodes.back().position).norm() > 0.0) ++n_moving;
     nodes.push_back({*time_s_[i], centre_[i]});
   }
-  timed_ = 5 * n_timed >= 4 * stations.size() && 2 * n_moving >= n_timed && n_moving >= 2;
-  phase_.resize(stations.size(), 0.0);
+  timed_ = 5 * n_timed >= 4 * photos.size() && 2 * n_moving >= n_timed && n_moving >= 2;
+  phase_.resize(photos.size(), 0.0);
   for (size_t f = 0; f < members.size(); ++f) {
     const std::vector<Node>& nodes = nodes_[f];
     const bool by_time = nodes.size() >= 2;

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::georeference {
 
@@ -13,20 +13,20 @@ struct TrackPoint {
   Eigen::Vector3d velocity;  // model units per second; zero where unknown
 };
 
-// Straight lines between the stations of a flight, in the order of time.
+// Straight lines between the photos of a flight, in the order of time.
 class Track {
  public:
-  // `flight` is the flight of each station.
-  Track(const std::vector<input::Station>& stations, const std::vector<int>& flight);
+  // `flight` is the flight of each photo.
+  Track(const std::vector<input::PreparedPhoto>& photos, const std::vector<int>& flight);
 
-  // Most stations have a time, and the camera moves between them: a lag of the tags can be estimated.
+  // Most photos have a time, and the camera moves between them: a lag of the tags can be estimated.
   bool timed() const { return timed_; }
-  // Where station i's camera was `lag_s` before its photo. Beyond the ends of a flight its first or last line is extended. Stations without time do
-  // not move.
+  // Where the camera of photo i was `lag_s` before it was taken. Beyond the ends of a flight its first or last line is extended. Photos without time
+  // do not move.
   TrackPoint Before(size_t i, double lag_s) const;
-  // Stations in the order of time within flights; those without time follow in name order.
+  // Photos in the order of time within flights; those without time follow in name order.
   const std::vector<size_t>& order() const { return order_; }
-  // Position of a station in its flight, -0.5 for the first to 0.5 for the last, by time or, for flights without times, by name.
+  // Position of a photo in its flight, -0.5 for the first to 0.5 for the last, by time or, for flights without times, by name.
   double Phase(size_t i) const { return phase_[i]; }
 
  private:

@@ -11,7 +11,7 @@
 #include "core/base/order_statistics.h"
 #include "core/base/text.h"
 #include "prepare/georeference/tags/tag_checks.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 #include "prepare/input/tag_accuracy.h"
 
 namespace skyquilt::prepare::georeference {
@@ -71,9 +71,9 @@ class Cleaner {
   Cleaner(double flight_gap_s, std::vector<input::PhotoFile>& photos) : photos_(photos) {
     found_.n_photos = photos.size();
     had_absolute_.assign(photos.size(), 0);
-    std::vector<input::Station> stations;
-    for (const input::PhotoFile& photo : photos) stations.push_back(input::MakeStation(photo.name, {}, photo.tags));
-    flight_ = input::SplitFlights(stations, flight_gap_s);
+    std::vector<input::PreparedPhoto> without_pose;
+    for (const input::PhotoFile& photo : photos) without_pose.push_back(input::PreparePhoto(photo, 0, {}));
+    flight_ = input::SplitFlights(without_pose, flight_gap_s);
   }
 
   UnfilledTags Run() {

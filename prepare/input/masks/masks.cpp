@@ -214,10 +214,9 @@ MaskPlaces FindMaskPlaces(const fs::path& photo_root, const std::string& option,
   return places;
 }
 
-PhotoMasks FindMasks(const fs::path& photo_root, const MaskPlaces& places, const std::vector<PhotoFile>& photos, const fs::path& own_folder,
+PhotoMasks FindMasks(const fs::path& photo_root, const MaskPlaces& places, const fs::path& own_folder, std::vector<PhotoFile>& photos,
                      std::vector<InputFile>& files, base::ThreadPool& threads) {
   PhotoMasks masks;
-  masks.files.resize(photos.size());
   masks.origin.resize(photos.size());
   if (places.none || photos.empty()) return masks;
   std::vector<Chosen> chosen = MaskSearch(photo_root, places, photos, files).Choose();
@@ -252,7 +251,7 @@ PhotoMasks FindMasks(const fs::path& photo_root, const MaskPlaces& places, const
   }
   for (size_t i = 0; i < photos.size(); ++i) {
     if (jobs[i].file.empty() && !jobs[i].alpha) continue;
-    masks.files[i] = (masks.folder / (photos[i].name + ".png")).string();
+    photos[i].mask = (masks.folder / (photos[i].name + ".png")).string();
     masks.origin[i] = jobs[i].alpha ? kAlpha : ShownPath(jobs[i].file, photo_root);
   }
   LogMasks(masks.origin, chosen);

@@ -26,7 +26,6 @@ MaskPlaces FindMaskPlaces(const std::filesystem::path& photo_root, const std::st
 
 struct PhotoMasks {
   std::filesystem::path folder;     // has the masks as COLMAP wants them, folder/NAME.png; empty: there are none
-  std::vector<std::string> files;   // of each photo: path of its mask in `folder`; empty: none
   std::vector<std::string> origin;  // of each photo: the file it came from, relative to the photo folder where it is inside, or "alpha"
 };
 
@@ -38,10 +37,10 @@ struct PhotoMasks {
 //   one for all photos of a folder: sub/mask.png or camera_mask.png, those of the folders above, masks/sub.png; the only file of the folder of masks
 //   its own alpha (PNG, TIFF)
 // Masks of another size with the same shape are scaled (nearest pixel). `files`: the list (list_files.h), whose kMask are masks in the photo folder;
-// their field `mask` is filled. Unless all masks already are PNGs of the photos' sizes with COLMAP's names in one folder, they are written to
+// `mask` of photos and files is filled. Unless all masks already are PNGs of the photos' sizes with COLMAP's names in one folder, they are written to
 // `own_folder`, where files of earlier calls that are equal stay untouched. Logs what was found, and warns of masks that fit no photo. Throws
 // base::InputError for a mask of another shape than its photo, and for folders of masks that fit no photo at all.
-PhotoMasks FindMasks(const std::filesystem::path& photo_root, const MaskPlaces& places, const std::vector<PhotoFile>& photos,
-                     const std::filesystem::path& own_folder, std::vector<InputFile>& files, base::ThreadPool& threads);
+PhotoMasks FindMasks(const std::filesystem::path& photo_root, const MaskPlaces& places, const std::filesystem::path& own_folder,
+                     std::vector<PhotoFile>& photos, std::vector<InputFile>& files, base::ThreadPool& threads);
 
 }  // namespace skyquilt::prepare::input

@@ -312,19 +312,19 @@ TEST(InnerRooms, NamespacesAreNamedAfterThem) {
 
 TEST(InnerRooms, ForbiddenIncludesAreFound) {
   const std::vector<std::pair<std::string, std::string>> violators = {
-      {"prepare/bundle/a.cpp", "prepare/control/fit/fit_control.h"},
-      {"prepare/poses/seed/a.h", "prepare/georeference/gravity.h"},
-      {"prepare/control/fit/a.cpp", "prepare/prepare_options.h"},
-      {"prepare/input/masks/a.cpp", "prepare/poses/pairs.h"},
-      {"prepare/nowhere/a.cpp", "prepare/input/station.h"},
-      {"evaluate/photos/a.cpp", "evaluate/metrics/metrics.h"},
+      {"prepare/bundle/a.cpp", "prepare/control/fit/fit_control.h"},      {"prepare/poses/seed/a.h", "prepare/georeference/gravity.h"},
+      {"prepare/control/fit/a.cpp", "prepare/prepare_options.h"},         {"prepare/input/masks/a.cpp", "prepare/poses/pairs.h"},
+      {"prepare/nowhere/a.cpp", "prepare/input/prepared_photo.h"},        {"evaluate/photos/a.cpp", "evaluate/metrics/metrics.h"},
       {"evaluate/buildings/a.cpp", "evaluate/control/control_summary.h"},
   };
   for (const auto& [file, header] : violators) EXPECT_EQ(ViolationsIn(file, "#include \"" + header + "\"\n").size(), 1U) << file << ": " << header;
   const std::vector<std::pair<std::string, std::string>> accepted = {
-      {"prepare/a.cpp", "prepare/control/fit/fit_control.h"},         {"prepare/poses/a.cpp", "prepare/poses/seed/verdict.h"},
-      {"prepare/georeference/tags/a.cpp", "prepare/input/station.h"}, {"prepare/bundle/a.cpp", "core/linear/linear.h"},
-      {"evaluate/page/a.cpp", "evaluate/metrics/metrics.h"},          {"evaluate/photos/a.cpp", "evaluate/evaluate_input.h"},
+      {"prepare/a.cpp", "prepare/control/fit/fit_control.h"},
+      {"prepare/poses/a.cpp", "prepare/poses/seed/verdict.h"},
+      {"prepare/georeference/tags/a.cpp", "prepare/input/prepared_photo.h"},
+      {"prepare/bundle/a.cpp", "core/linear/linear.h"},
+      {"evaluate/page/a.cpp", "evaluate/metrics/metrics.h"},
+      {"evaluate/photos/a.cpp", "evaluate/evaluate_input.h"},
   };
   for (const auto& [file, header] : accepted) EXPECT_TRUE(ViolationsIn(file, "#include \"" + header + "\"\n").empty()) << file << ": " << header;
 }

@@ -13,12 +13,12 @@
 namespace skyquilt::prepare::georeference {
 namespace {
 
-std::vector<input::Station> Stations(const test::Flight& flight) {
-  std::vector<input::Station> stations;
+std::vector<input::PreparedPhoto> Photos(const test::Flight& flight) {
+  std::vector<input::PreparedPhoto> photos;
   for (size_t i = 0; i < flight.photos.size(); ++i) {
-    stations.push_back(input::MakeStation(flight.photos[i].name, flight.model.images[i].cam_from_world, flight.photos[i].tags));
+    photos.push_back(input::PreparePhoto({.name = flight.photos[i].name, .tags = flight.photos[i].tags}, i, flight.model.images[i].cam_from_world));
   }
-  return stations;
+  return photos;
 }
 
 std::vector<Eigen::Vector3d> Points(const test::Flight& flight) {
@@ -28,7 +28,7 @@ std::vector<Eigen::Vector3d> Points(const test::Flight& flight) {
 }
 
 Georeference Place(const test::Flight& flight, const PlaceOptions& options = {}) {
-  return PlaceOnEarth(Stations(flight), Points(flight), options);
+  return PlaceOnEarth(Photos(flight), Points(flight), options);
 }
 
 TEST(Georeference, ExactTagsAreRecoveredEverywhereOnEarth) {
@@ -80,10 +80,10 @@ TEST(Georeference, ARefusedFitLeavesNoAccuracyBehind) {
 // Pitch of +90 at nadir: gimbal angles outweigh everything else, and a survey that hangs upside down looks mirrored to its GPS tags.
 TEST(Georeference, GimbalAnglesThatStandAloneAreDropped) {
   const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
-  std::vector<input::Station> stations = Stations(flight);
-  const Georeference without = PlaceOnEarth(stations, Points(flight), {});
-  for (input::Station& station : stations) station.up_in_cam = input::UpInCamera(90.0, 0.0);
-  const Georeference result = PlaceOnEarth(stations, Points(flight), {});
+  std::vector<input::PreparedPhoto> photos = Photos(flight);
+  const Georeference without = PlaceOnEarth(photos, Points(flight), {});
+  for (input::PreparedPhoto& photo : photos) photo.up_in_cam = input::UpInCamera(90.0, 0.0);
+  const Georeference result = PlaceOnEarth(photos, Points(flight), {});
   ASSERT_TRUE(result.ok);
   EXPECT_EQ(result.gimbal.use, GimbalUse::kDropped);
   EXPECT_EQ(result.fit.n_inliers, 20);
@@ -91,8 +91,8 @@ TEST(Georeference, GimbalAnglesThatStandAloneAreDropped) {
   EXPECT_EQ(result.enu_from_model.rotation.coeffs(), without.enu_from_model.rotation.coeffs());
   EXPECT_EQ(result.enu_from_model.translation, without.enu_from_model.translation);
   // Right angles are used.
-  for (input::Station& station : stations) station.up_in_cam = input::UpInCamera(-90.0, 0.0);
-  const Georeference right = PlaceOnEarth(stations, Points(flight), {});
+  for (input::PreparedPhoto& photo : photos) photo.up_in_cam = input::UpInCamera(-90.0, 0.0);
+  const Georeference right = PlaceOnEarth(photos, Points(flight), {});
   EXPECT_EQ(right.gimbal.use, GimbalUse::kUsed);
   EXPECT_EQ(right.fit.gravity.front().kind, "gimbal");
 }
@@ -161,11 +161,11 @@ TEST(Georeference, TheRtkFlightIsTheReference) {
 
 TEST(Georeference, TooFewOrOnePlaceIsNotOk) {
   test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
-  std::vector<input::Station> stations = Stations(flight);
-  for (size_t i = 2; i < stations.size(); ++i) stations[i].gps.reset();
-  EXPECT_FALSE(PlaceOnEarth(stations, {}, {}).ok);
-  for (input::Station& station : stations) station.gps.reset();
-  EXPECT_FALSE(PlaceOnEarth(stations, {}, {}).ok);
+  std::vector<input::PreparedPhoto> photos = Photos(flight);
+  for (size_t i = 2; i < photos.size(); ++i) photos[i].gps.reset();
+  EXPECT_FALSE(PlaceOnEarth(photos, {}, {}).ok);
+  for (input::PreparedPhoto& photo : photos) photo.gps.reset();
+  EXPECT_FALSE(PlaceOnEarth(photos, {}, {}).ok);
   EXPECT_FALSE(PlaceOnEarth({}, {}, {}).ok);
   test::SetTags(flight, [](size_t, const Eigen::Vector3d&) { return Eigen::Vector3d(1.0, 2.0, 3.0); });
   const Georeference one_place = Place(flight);
@@ -176,12 +176,12 @@ TEST(Georeference, TooFewOrOnePlaceIsNotOk) {
 TEST(Georeference, AnExactFrameStaysAndStillReportsResiduals) {
   test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
   test::SetTags(flight, [](size_t, const Eigen::Vector3d& centre) { return Eigen::Vector3d(centre + Eigen::Vector3d(3.0, 0.0, 4.0)); });
-  std::vector<input::Station> stations = Stations(flight);
-  for (size_t i = 0; i < stations.size(); ++i) {
-    stations[i].cam_from_model.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
-    stations[i].cam_from_model.translation = -(stations[i].cam_from_model.rotation * flight.photos[i].centre_in_enu);
+  std::vector<input::PreparedPhoto> photos = Photos(flight);
+  for (size_t i = 0; i < photos.size(); ++i) {
+    photos[i].cam_from_model.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+    photos[i].cam_from_model.translation = -(photos[i].cam_from_model.rotation * flight.photos[i].centre_in_enu);
   }
-  const Georeference result = KeepExactFrame(stations, flight.origin, {});
+  const Georeference result = KeepExactFrame(photos, flight.origin, {});
   EXPECT_EQ(result.enu_from_model.scale, 1.0);
   EXPECT_EQ(result.enu_from_model.translation, Eigen::Vector3d::Zero());
   EXPECT_NEAR(result.fit.rmse_m, 5.0, 1e-3);
@@ -190,26 +190,26 @@ TEST(Georeference, AnExactFrameStaysAndStillReportsResiduals) {
 }
 
 TEST(SplitFlights, GoesByTimeNotByName) {
-  std::vector<input::Station> stations(6);
+  std::vector<input::PreparedPhoto> photos(6);
   const double times[] = {1000.0, 0.0, 5000.0, 500.0, -1.0, 5100.0};
   for (size_t i = 0; i < 6; ++i) {
-    if (times[i] >= 0.0) stations[i].time_s = times[i];
+    if (times[i] >= 0.0) photos[i].file.tags.capture_time_s = times[i];
   }
-  EXPECT_EQ(input::SplitFlights(stations, 900.0), (std::vector<int>{0, 0, 1, 0, 0, 1}));
-  EXPECT_EQ(input::SplitFlights(stations, 400.0), (std::vector<int>{2, 0, 3, 1, 1, 3}));
+  EXPECT_EQ(input::SplitFlights(photos, 900.0), (std::vector<int>{0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(input::SplitFlights(photos, 400.0), (std::vector<int>{2, 0, 3, 1, 1, 3}));
   EXPECT_TRUE(input::SplitFlights({}, 900.0).empty());
 }
 
 TEST(LocalFrame, PutsTheGroundBelowAtAFixedDepth) {
   const test::Flight flight = test::MakeFlight({47.0, 8.0, 400.0});
-  const std::vector<input::Station> stations = Stations(flight);
-  const geo::Similarity3d local = LocalFrame(stations, Points(flight), FindGravity(stations, Points(flight)).up);
+  const std::vector<input::PreparedPhoto> photos = Photos(flight);
+  const geo::Similarity3d local = LocalFrame(photos, Points(flight), FindGravity(photos, Points(flight)).up);
   EXPECT_NEAR((local.rotation * (flight.model_from_enu.rotation * Eigen::Vector3d::UnitZ())).z(), 1.0, 1e-5);
-  EXPECT_NEAR((local * stations[7].cam_from_model.OriginInSource()).z(), kLocalDepth, 5.0);
+  EXPECT_NEAR((local * photos[7].cam_from_model.OriginInSource()).z(), kLocalDepth, 5.0);
 }
 
 TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirHorizons) {
-  std::vector<input::Station> stations;
+  std::vector<input::PreparedPhoto> photos;
   const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
   const Eigen::Quaterniond tilt = linear::RotationBetween(Eigen::Vector3d::UnitZ(), up);
   for (int i = 0; i < 12; ++i) {
@@ -219,16 +219,16 @@ TEST(LocalFrame, ObliqueCirclesAreLevelledByTheirHorizons) {
     const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
     Eigen::Matrix3d world_from_cam;
     world_from_cam << right, forward.cross(right), forward;
-    input::Station station;
-    station.cam_from_model.rotation = Eigen::Quaterniond(world_from_cam).conjugate() * tilt.conjugate();
-    station.cam_from_model.translation = -(station.cam_from_model.rotation * (tilt * centre));
-    stations.push_back(station);
+    input::PreparedPhoto photo;
+    photo.cam_from_model.rotation = Eigen::Quaterniond(world_from_cam).conjugate() * tilt.conjugate();
+    photo.cam_from_model.translation = -(photo.cam_from_model.rotation * (tilt * centre));
+    photos.push_back(photo);
   }
   const std::vector<Eigen::Vector3d> points = {Eigen::Vector3d::Zero(), tilt * Eigen::Vector3d(1.0, 1.0, 0.0),
                                                tilt * Eigen::Vector3d(-1.0, 0.5, 0.0)};
-  const geo::Similarity3d local = LocalFrame(stations, points, FindGravity(stations, points).up);
+  const geo::Similarity3d local = LocalFrame(photos, points, FindGravity(photos, points).up);
   EXPECT_NEAR((local.rotation * up).z(), 1.0, 1e-9);
-  EXPECT_GT((local * stations[0].cam_from_model.OriginInSource()).z(), 0.0);
+  EXPECT_GT((local * photos[0].cam_from_model.OriginInSource()).z(), 0.0);
 }
 
 }  // namespace

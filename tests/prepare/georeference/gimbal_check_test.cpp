@@ -7,7 +7,7 @@
 
 #include "core/base/random.h"
 #include "prepare/georeference/gravity.h"
-#include "tests/prepare/georeference/made_stations.h"
+#include "tests/prepare/georeference/lawnmower_photos.h"
 
 namespace skyquilt::test {
 namespace {
@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 // A lawnmower over level ground in a random frame. `tagged`: what the tags make of pitch and roll.
 struct TaggedSurvey {
   geo::Similarity3d model_from_enu;
-  std::vector<prepare::input::Station> stations = {};
+  std::vector<prepare::input::PreparedPhoto> photos = {};
   std::vector<Vector3d> points = {};
 };
 
@@ -28,8 +28,8 @@ TaggedSurvey MakeTagged(uint64_t seed, const std::function<Attitude(int)>& attit
   constexpr int kPhotos = 40;
   for (int i = 0; i < kPhotos; ++i) {
     const Attitude a = attitude(i);
-    survey.stations.push_back(StationAt(OnLawnmower(i, kPhotos), a, survey.model_from_enu));
-    survey.stations.back().up_in_cam = tagged(a);
+    survey.photos.push_back(PreparedAt(OnLawnmower(i, kPhotos), a, survey.model_from_enu));
+    survey.photos.back().up_in_cam = tagged(a);
   }
   for (int i = 0; i < 400; ++i) {
     const double east_m = random.Uniform(-100.0, 100.0);
@@ -60,7 +60,7 @@ Vector3d FromStraightDown(const Attitude& a) {
 }
 
 GimbalVerdict VerdictOf(const TaggedSurvey& survey, const std::optional<Vector3d>& tags_up) {
-  return JudgeGimbal(survey.stations, survey.points, [&] { return tags_up; });
+  return JudgeGimbal(survey.photos, survey.points, [&] { return tags_up; });
 }
 
 TEST(GimbalCheck, RightAnglesAreUsed) {
@@ -121,7 +121,7 @@ TEST(GimbalCheck, OtherWrongAnglesAreDroppedWhenTagsContradictThem) {
 
 TEST(GimbalCheck, NoAnglesNoVerdict) {
   TaggedSurvey survey = MakeTagged(11, LinesDown, Right);
-  for (prepare::input::Station& station : survey.stations) station.up_in_cam.reset();
+  for (prepare::input::PreparedPhoto& photo : survey.photos) photo.up_in_cam.reset();
   EXPECT_EQ(VerdictOf(survey, std::nullopt).use, GimbalUse::kUsed);
   EXPECT_EQ(JudgeGimbal({}, {}, [] { return std::nullopt; }).use, GimbalUse::kUsed);
 }

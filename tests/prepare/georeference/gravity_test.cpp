@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "tests/prepare/georeference/made_stations.h"
+#include "tests/prepare/georeference/lawnmower_photos.h"
 
 namespace skyquilt::prepare::georeference {
 namespace {
@@ -21,7 +21,7 @@ constexpr int kCameras = 40;
 
 struct Attempt {
   geo::Similarity3d model_from_enu;
-  std::vector<input::Station> stations = {};
+  std::vector<input::PreparedPhoto> photos = {};
 
   Vector3d Up() const { return model_from_enu.rotation * Vector3d::UnitZ(); }
 };
@@ -32,8 +32,8 @@ Attempt MakeAttempt(uint64_t seed, const std::function<Attitude(int)>& attitude)
   Attempt attempt{.model_from_enu = test::RandomFrame(random)};
   for (int i = 0; i < kCameras; ++i) {
     const Attitude a = attitude(i);
-    attempt.stations.push_back(test::StationAt(test::OnLawnmower(i, kCameras), a, attempt.model_from_enu));
-    attempt.stations.back().up_in_cam = input::UpInCamera(a.pitch_deg, a.roll_deg);
+    attempt.photos.push_back(test::PreparedAt(test::OnLawnmower(i, kCameras), a, attempt.model_from_enu));
+    attempt.photos.back().up_in_cam = input::UpInCamera(a.pitch_deg, a.roll_deg);
   }
   return attempt;
 }
@@ -42,8 +42,8 @@ Attitude NadirLines(int i) {
   return {.yaw_deg = (i / test::kLine) % 2 == 0 ? 20.0 : 200.0};
 }
 
-void WithoutAngles(std::vector<input::Station>& stations) {
-  for (input::Station& station : stations) station.up_in_cam.reset();
+void WithoutAngles(std::vector<input::PreparedPhoto>& photos) {
+  for (input::PreparedPhoto& photo : photos) photo.up_in_cam.reset();
 }
 
 // Ground below the lawnmower that rises towards the east by `slope_deg`.
@@ -76,7 +76,7 @@ TEST(GimbalEvidence, ExactAnglesGiveTheExactUp) {
   uint64_t seed = 1;
   for (const auto& kind : kinds) {
     const Attempt attempt = MakeAttempt(seed++, kind);
-    const std::vector<UpEvidence> evidence = GimbalEvidence(attempt.stations);
+    const std::vector<UpEvidence> evidence = GimbalEvidence(attempt.photos);
     ASSERT_EQ(evidence.size(), 1U);
     EXPECT_EQ(evidence[0].kind, "gimbal");
     EXPECT_EQ(evidence[0].n, kCameras);
@@ -89,8 +89,8 @@ TEST(GimbalEvidence, ACommonErrorCancelsWithOppositeHeadings) {
     Attempt attempt = MakeAttempt(2, NadirLines);
     base::Random random(3);
     const Eigen::Quaterniond common(Eigen::AngleAxisd(common_deg / kDegrees, Vector3d(0.8, 0.6, 0.0)));
-    for (input::Station& station : attempt.stations) station.up_in_cam = common * (test::SmallRotation(0.5, random) * *station.up_in_cam);
-    const UpEvidence evidence = GimbalEvidence(attempt.stations).at(0);
+    for (input::PreparedPhoto& photo : attempt.photos) photo.up_in_cam = common * (test::SmallRotation(0.5, random) * *photo.up_in_cam);
+    const UpEvidence evidence = GimbalEvidence(attempt.photos).at(0);
     EXPECT_LT(AngleDeg(evidence.up, attempt.Up()), 0.25);
     EXPECT_LT(evidence.Sigma() * kDegrees, 0.25);
   }
@@ -102,8 +102,8 @@ TEST(GimbalEvidence, TheStatedAccuracyCoversACommonErrorWithOneHeading) {
     Attempt attempt = MakeAttempt(seed, [](int) { return Attitude{.yaw_deg = 70.0}; });
     base::Random random(seed, 1);
     const Eigen::Quaterniond common = test::SmallRotation(kGimbalCommon_deg, random);
-    for (input::Station& station : attempt.stations) station.up_in_cam = common * (test::SmallRotation(0.5, random) * *station.up_in_cam);
-    const UpEvidence evidence = GimbalEvidence(attempt.stations).at(0);
+    for (input::PreparedPhoto& photo : attempt.photos) photo.up_in_cam = common * (test::SmallRotation(0.5, random) * *photo.up_in_cam);
+    const UpEvidence evidence = GimbalEvidence(attempt.photos).at(0);
     errors += std::pow(AngleDeg(evidence.up, attempt.Up()), 2);
     stated += std::pow(evidence.Sigma() * kDegrees, 2);
   }
@@ -114,25 +114,25 @@ TEST(GimbalEvidence, TheStatedAccuracyCoversACommonErrorWithOneHeading) {
 TEST(GimbalEvidence, WrongAnglesDoNotPull) {
   Attempt attempt = MakeAttempt(5, NadirLines);
   base::Random random(6);
-  for (size_t i = 0; i < attempt.stations.size(); ++i) {
-    Vector3d& up = *attempt.stations[i].up_in_cam;
+  for (size_t i = 0; i < attempt.photos.size(); ++i) {
+    Vector3d& up = *attempt.photos[i].up_in_cam;
     up = i % 5 == 3 ? Vector3d{random.Normal(), random.Normal(), random.Normal()}.normalized() : Vector3d(test::SmallRotation(0.3, random) * up);
   }
-  EXPECT_LT(AngleDeg(GimbalEvidence(attempt.stations).at(0).up, attempt.Up()), 0.2);
+  EXPECT_LT(AngleDeg(GimbalEvidence(attempt.photos).at(0).up, attempt.Up()), 0.2);
 }
 
 TEST(GimbalEvidence, IsEmptyWithoutAnglesOrWhenTheyCancel) {
   Attempt attempt = MakeAttempt(7, NadirLines);
-  for (size_t i = 0; i < attempt.stations.size(); i += 2) *attempt.stations[i].up_in_cam *= -1.0;
-  EXPECT_TRUE(GimbalEvidence(attempt.stations).empty());
-  WithoutAngles(attempt.stations);
-  EXPECT_TRUE(GimbalEvidence(attempt.stations).empty());
+  for (size_t i = 0; i < attempt.photos.size(); i += 2) *attempt.photos[i].up_in_cam *= -1.0;
+  EXPECT_TRUE(GimbalEvidence(attempt.photos).empty());
+  WithoutAngles(attempt.photos);
+  EXPECT_TRUE(GimbalEvidence(attempt.photos).empty());
   EXPECT_TRUE(GimbalEvidence({}).empty());
 }
 
 TEST(CameraEvidence, LevelCamerasAllAroundGiveUp) {
   const Attempt attempt = MakeAttempt(8, [](int i) { return Attitude{.yaw_deg = 27.0 * i, .pitch_deg = -40.0}; });
-  const std::vector<UpEvidence> evidence = CameraEvidence(attempt.stations);
+  const std::vector<UpEvidence> evidence = CameraEvidence(attempt.photos);
   ASSERT_EQ(evidence.size(), 1U);
   EXPECT_EQ(evidence[0].kind, "cameras");
   EXPECT_LT(AngleDeg(evidence[0].up, attempt.Up()), 0.01);
@@ -140,16 +140,16 @@ TEST(CameraEvidence, LevelCamerasAllAroundGiveUp) {
 
 TEST(CameraEvidence, NadirLinesGiveUpWhateverTheirMounting) {
   const Attempt exact = MakeAttempt(9, NadirLines);
-  EXPECT_LT(AngleDeg(CameraEvidence(exact.stations).at(0).up, exact.Up()), 0.01);
+  EXPECT_LT(AngleDeg(CameraEvidence(exact.photos).at(0).up, exact.Up()), 0.01);
   // A camera mounted askew leans forward on the way out and back on the way home.
   const Attempt mounted = MakeAttempt(10, [](int i) {
     return Attitude{NadirLines(i).yaw_deg, -88.5 + 0.5 * std::sin(11.0 * i), 0.5 * std::cos(7.0 * i)};
   });
-  const UpEvidence evidence = CameraEvidence(mounted.stations).at(0);
+  const UpEvidence evidence = CameraEvidence(mounted.photos).at(0);
   EXPECT_LT(AngleDeg(evidence.up, mounted.Up()), 0.2);
   // With one heading the mounting stays unknown, and the stated accuracy says so.
   const Attempt one_way = MakeAttempt(11, [](int) { return Attitude{.yaw_deg = 70.0}; });
-  EXPECT_GT(CameraEvidence(one_way.stations).at(0).Sigma() * kDegrees, kCameraCommon_deg);
+  EXPECT_GT(CameraEvidence(one_way.photos).at(0).Sigma() * kDegrees, kCameraCommon_deg);
   EXPECT_LT(evidence.Sigma() * kDegrees, 0.5 * kCameraCommon_deg);
 }
 
@@ -188,14 +188,14 @@ TEST(GroundEvidence, SaysNothingWithoutAPlane) {
 TEST(FindGravity, AHillPullsOnlyWithoutGimbalAngles) {
   Attempt attempt = MakeAttempt(14, NadirLines);
   const std::vector<Vector3d> points = Ground(attempt.model_from_enu, 8.0, 1.0);
-  const Gravity gimbal = FindGravity(attempt.stations, points);
+  const Gravity gimbal = FindGravity(attempt.photos, points);
   EXPECT_LT(AngleDeg(gimbal.up, attempt.Up()), 0.1);
   EXPECT_LT(gimbal.Sigma() * kDegrees, 0.3);
   ASSERT_EQ(gimbal.evidence.size(), 3U);
   for (const UpEvidence& evidence : gimbal.evidence) EXPECT_EQ(evidence.used, evidence.kind != "cameras");
 
-  WithoutAngles(attempt.stations);
-  const Gravity cameras = FindGravity(attempt.stations, points);
+  WithoutAngles(attempt.photos);
+  const Gravity cameras = FindGravity(attempt.photos, points);
   const double error_deg = AngleDeg(cameras.up, attempt.Up());
   EXPECT_LT(error_deg, 2.0);
   EXPECT_LT(error_deg, 1.96 * cameras.Sigma() * kDegrees);
@@ -204,16 +204,16 @@ TEST(FindGravity, AHillPullsOnlyWithoutGimbalAngles) {
 
 TEST(FindGravity, FewGimbalAnglesJoinTheCameras) {
   Attempt attempt = MakeAttempt(15, NadirLines);
-  for (size_t i = 0; i < attempt.stations.size(); ++i) {
-    if (i % 3 != 0) attempt.stations[i].up_in_cam.reset();
+  for (size_t i = 0; i < attempt.photos.size(); ++i) {
+    if (i % 3 != 0) attempt.photos[i].up_in_cam.reset();
   }
-  const Gravity gravity = FindGravity(attempt.stations, {});
+  const Gravity gravity = FindGravity(attempt.photos, {});
   ASSERT_EQ(gravity.evidence.size(), 2U);
   EXPECT_TRUE(gravity.evidence[0].used && gravity.evidence[1].used);
   EXPECT_LT(AngleDeg(gravity.up, attempt.Up()), 0.01);
 }
 
-TEST(FindGravity, WithoutStationsNothingIsKnown) {
+TEST(FindGravity, WithoutPhotosNothingIsKnown) {
   const Gravity gravity = FindGravity({}, {});
   EXPECT_TRUE(gravity.evidence.empty());
   EXPECT_EQ(gravity.up, Vector3d::UnitZ());
@@ -223,20 +223,20 @@ TEST(FindGravity, WithoutStationsNothingIsKnown) {
 TEST(FindGravity, CamerasTurnedAtRandomAreNotTrusted) {
   for (uint64_t seed = 1; seed <= 5; ++seed) {
     base::Random random(seed);
-    std::vector<input::Station> stations(30);
-    for (input::Station& station : stations) {
-      station.cam_from_model.rotation = Eigen::Quaterniond{random.Normal(), random.Normal(), random.Normal(), random.Normal()}.normalized();
+    std::vector<input::PreparedPhoto> photos(30);
+    for (input::PreparedPhoto& photo : photos) {
+      photo.cam_from_model.rotation = Eigen::Quaterniond{random.Normal(), random.Normal(), random.Normal(), random.Normal()}.normalized();
     }
-    EXPECT_GT(FindGravity(stations, {}).Sigma() * kDegrees, 5.0) << seed;
+    EXPECT_GT(FindGravity(photos, {}).Sigma() * kDegrees, 5.0) << seed;
   }
 }
 
 TEST(FindGravity, EvidenceThatContradictsItselfWidensTheResult) {
   Attempt attempt = MakeAttempt(16, NadirLines);
-  const double agreeing = FindGravity(attempt.stations, Ground(attempt.model_from_enu, 0.0, 1.0)).Sigma();
-  WithoutAngles(attempt.stations);
-  const double level = FindGravity(attempt.stations, Ground(attempt.model_from_enu, 0.0, 1.0)).Sigma();
-  const double steep = FindGravity(attempt.stations, Ground(attempt.model_from_enu, 30.0, 1.0)).Sigma();
+  const double agreeing = FindGravity(attempt.photos, Ground(attempt.model_from_enu, 0.0, 1.0)).Sigma();
+  WithoutAngles(attempt.photos);
+  const double level = FindGravity(attempt.photos, Ground(attempt.model_from_enu, 0.0, 1.0)).Sigma();
+  const double steep = FindGravity(attempt.photos, Ground(attempt.model_from_enu, 30.0, 1.0)).Sigma();
   EXPECT_GT(level, agreeing);
   EXPECT_GT(steep, 1.5 * level);
 }

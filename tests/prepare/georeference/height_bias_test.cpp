@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/base/order_statistics.h"
-#include "tests/prepare/georeference/made_stations.h"
+#include "tests/prepare/georeference/lawnmower_photos.h"
 
 namespace skyquilt::prepare::georeference {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "prepare/georeference/tags/track.h"
-#include "tests/prepare/georeference/made_stations.h"
+#include "tests/prepare/georeference/lawnmower_photos.h"
 
 namespace skyquilt::prepare::georeference {
 namespace {
@@ -84,8 +84,8 @@ TEST(FitHorizontally, OfTwoGroupsTheLargerWins) {
 TEST(FitHorizontally, FindsTheLagOnALawnmower) {
   base::Random random(5);
   const geo::Similarity3d model_from_enu{0.1, Eigen::Quaterniond::Identity(), Eigen::Vector3d(1.0, 2.0, 3.0)};
-  const std::vector<input::Station> stations = test::LawnmowerStations(kTags, model_from_enu);
-  const Track track(stations, std::vector<int>(kTags, 0));
+  const std::vector<input::PreparedPhoto> photos = test::LawnmowerPhotos(kTags, model_from_enu);
+  const Track track(photos, std::vector<int>(kTags, 0));
   const auto level = [&](size_t k, double lag_s) { return Vector2d(track.Before(k, lag_s).position.head<2>()); };
   HorizontalFitOptions options;
   for (double lag_s = -1.5; lag_s <= 5.0; lag_s += 0.25) options.lags_s.push_back(lag_s);

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "tests/prepare/georeference/made_stations.h"
+#include "tests/prepare/georeference/lawnmower_photos.h"
 
 namespace skyquilt::prepare::georeference {
 namespace {
@@ -26,8 +26,8 @@ constexpr double kHorizontalNoise_m = 2.0, kVerticalNoise_m = 3.0;
 // A lawnmower flight in a model frame with exact tags and gravity.
 struct Problem {
   geo::Similarity3d model_from_enu{0.08, Eigen::Quaterniond(0.6, -0.3, 0.5, 0.2).normalized(), Vector3d(3.0, -2.0, 1.0)};
-  std::vector<input::Station> stations = test::LawnmowerStations(kPhotos, model_from_enu);
-  Track track{stations, std::vector<int>(kPhotos, 0)};
+  std::vector<input::PreparedPhoto> photos = test::LawnmowerPhotos(kPhotos, model_from_enu);
+  Track track{photos, std::vector<int>(kPhotos, 0)};
   Gravity gravity;
   std::vector<Tag> tags;
   HeightBias bias;
@@ -37,7 +37,7 @@ struct Problem {
   explicit Problem(double lag_s = 0.0) {
     gravity.up = model_from_enu.rotation * Vector3d::UnitZ();
     gravity.information = (Matrix3d::Identity() - gravity.up * gravity.up.transpose()) / std::pow(kGravitySigma_deg * kRadiansPerDegree, 2);
-    for (size_t i = 0; i < stations.size(); ++i) tags.push_back({.station = i, .x_in_enu = EnuFromModel() * track.Before(i, lag_s).position});
+    for (size_t i = 0; i < photos.size(); ++i) tags.push_back({.photo = i, .x_in_enu = EnuFromModel() * track.Before(i, lag_s).position});
   }
   geo::Similarity3d EnuFromModel() const {
     const Eigen::Quaterniond rotation = model_from_enu.rotation.conjugate();
@@ -45,7 +45,7 @@ struct Problem {
   }
   Vector3d Middle() const {
     Vector3d middle = Vector3d::Zero();
-    for (const input::Station& station : stations) middle += station.cam_from_model.OriginInSource() / static_cast<double>(stations.size());
+    for (const input::PreparedPhoto& photo : photos) middle += photo.cam_from_model.OriginInSource() / static_cast<double>(photos.size());
     return middle;
   }
   void AddNoise(base::Random& random) {

@@ -51,11 +51,11 @@ TEST(PlaceByControl, WrongAndUnseenPointsSayNothingOfADome) {
 TEST(PlaceByControl, WithoutAFileNothingChanges) {
   base::ThreadPool threads(1);
   survey::ColmapModel model;
-  std::vector<prepare::input::Station> stations;
+  std::vector<prepare::input::PreparedPhoto> photos;
   prepare::georeference::Georeference georeference;
   georeference.ok = true;
   const prepare::georeference::PlaceOptions options;
-  const survey::ControlFit fit = prepare::georeference::PlaceByControl({options, {}, {}, {}}, model, stations, georeference, threads);
+  const survey::ControlFit fit = prepare::georeference::PlaceByControl({options, {}, {}}, model, photos, georeference, threads);
   EXPECT_TRUE(fit.points.empty());
   EXPECT_TRUE(georeference.ok);
 }

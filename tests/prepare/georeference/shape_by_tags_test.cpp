@@ -11,18 +11,18 @@ namespace {
 
 using namespace prepare::georeference;
 
-// A grid of stations in ENU and a geo-reference whose residuals in height have the form of a dome of so much height, with noise.
-void MakeFlight(double dome_m, double noise_m, std::vector<prepare::input::Station>* stations, Georeference* georeference) {
+// A grid of photos in ENU and a geo-reference whose residuals in height have the form of a dome of so much height, with noise.
+void MakeFlight(double dome_m, double noise_m, std::vector<prepare::input::PreparedPhoto>* photos, Georeference* georeference) {
   base::Random random(2, 1);
   georeference->ok = true;
   for (int i = 0; i < 64; ++i) {
     const Eigen::Vector3d centre(20.0 * (i % 8) - 70.0, 20.0 * (i / 8) - 70.0, 60.0);
-    prepare::input::Station station;
-    station.name = std::to_string(i);
-    station.cam_from_model = {Eigen::Quaterniond::Identity(), -centre};
-    station.gps = geo::Geodetic{47.0, 8.0, 560.0};
-    station.time_s = 2.0 * i;
-    stations->push_back(station);
+    prepare::input::PreparedPhoto photo;
+    photo.file.name = std::to_string(i);
+    photo.cam_from_model = {Eigen::Quaterniond::Identity(), -centre};
+    photo.gps = geo::Geodetic{47.0, 8.0, 560.0};
+    photo.file.tags.capture_time_s = 2.0 * i;
+    photos->push_back(photo);
     const double square = centre.head<2>().squaredNorm() / (90.0 * 90.0);
     georeference->residual_m.emplace_back(0.0, 0.0, -dome_m * square + noise_m * random.Normal());
     georeference->correction_m.push_back(Eigen::Vector3d::Zero());
@@ -31,12 +31,12 @@ void MakeFlight(double dome_m, double noise_m, std::vector<prepare::input::Stati
 }
 
 bool Tells(double dome_m, double noise_m, double rtk_share = 0.0, bool placed = true) {
-  std::vector<prepare::input::Station> stations;
+  std::vector<prepare::input::PreparedPhoto> photos;
   Georeference georeference;
-  MakeFlight(dome_m, noise_m, &stations, &georeference);
+  MakeFlight(dome_m, noise_m, &photos, &georeference);
   georeference.ok = placed;
-  for (size_t i = 0; i < stations.size(); ++i) stations[i].rtk = static_cast<double>(i) < rtk_share * static_cast<double>(stations.size());
-  return TagsTellTheShape(stations, georeference);
+  for (size_t i = 0; i < photos.size(); ++i) photos[i].rtk = static_cast<double>(i) < rtk_share * static_cast<double>(photos.size());
+  return TagsTellTheShape(photos, georeference);
 }
 
 TEST(TagsTellTheShape, WhenABendIsClearOrTheTagsAreRtk) {
@@ -51,11 +51,11 @@ TEST(TagsTellTheShape, WhenABendIsClearOrTheTagsAreRtk) {
 }
 
 TEST(TagsTellTheShape, NotWithoutHeights) {
-  std::vector<prepare::input::Station> stations;
+  std::vector<prepare::input::PreparedPhoto> photos;
   Georeference georeference;
-  MakeFlight(2.0, 0.1, &stations, &georeference);
+  MakeFlight(2.0, 0.1, &photos, &georeference);
   for (Eigen::Vector3d& residual : georeference.residual_m) residual.z() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(TagsTellTheShape(stations, georeference));
+  EXPECT_FALSE(TagsTellTheShape(photos, georeference));
 }
 
 }  // namespace

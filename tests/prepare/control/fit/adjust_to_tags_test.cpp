@@ -28,11 +28,7 @@ constexpr size_t kK1 = 4;  // of a Lens
 // The same photos with another k1: what a reconstruction looks like whose lens is wrong by as much.
 void Bend(double k1_change, MadeControl* made) {
   const ControlPoints none;
-  ControlBundle bundle = MakeControlBundle({.model = made->model,
-                                            .observations = made->observations,
-                                            .stations = made->stations,
-                                            .image_of_station = made->image_of_station,
-                                            .control = none});
+  ControlBundle bundle = MakeControlBundle({.model = made->model, .observations = made->observations, .photos = made->photos, .control = none});
   const std::vector<prepare::bundle::BundlePhoto> before = bundle.bundle.photos;
   bundle.bundle.lenses[0].numbers[kK1] += k1_change;
   for (prepare::bundle::BundlePhoto& photo : bundle.bundle.photos) {
@@ -44,16 +40,16 @@ void Bend(double k1_change, MadeControl* made) {
   ASSERT_TRUE(prepare::bundle::AdjustBundle(bundle.bundle, tracks,
                                             {.loss = 2.5, .gentle = true, .free_lens = false, .max_iterations = 60, .tolerance = 1e-9}, {}));
   UpdateModel(bundle, {}, before, true, made->model);
-  for (size_t i = 0; i < made->stations.size(); ++i) made->stations[i].cam_from_model = made->model.images[i].cam_from_world;
+  for (size_t i = 0; i < made->photos.size(); ++i) made->photos[i].cam_from_model = made->model.images[i].cam_from_world;
 }
 
 // Tags at the true positions with so much noise.
 void Tag(double horizontal_m, double vertical_m, MadeControl* made) {
   const geo::EnuFrame frame(kMadeOrigin);
   base::Random random(5, 1);
-  for (size_t i = 0; i < made->stations.size(); ++i) {
+  for (size_t i = 0; i < made->photos.size(); ++i) {
     const Eigen::Vector3d noise{horizontal_m * random.Normal(), horizontal_m * random.Normal(), vertical_m * random.Normal()};
-    made->stations[i].gps = frame.GeodeticFromEnu(made->true_poses[i].OriginInSource() + noise);
+    made->photos[i].gps = frame.GeodeticFromEnu(made->true_poses[i].OriginInSource() + noise);
   }
 }
 
@@ -68,12 +64,7 @@ double DomeOf(const MadeControl& made) {
 }
 
 TagJob JobOf(MadeControl& made) {
-  return {.model = made.model,
-          .observations = made.observations,
-          .stations = made.stations,
-          .image_of_station = made.image_of_station,
-          .origin = kMadeOrigin,
-          .enu_from_model = {}};
+  return {.model = made.model, .observations = made.observations, .photos = made.photos, .origin = kMadeOrigin, .enu_from_model = {}};
 }
 
 const ControlPlan kPlan = {.survey = {.strips = 7, .per_strip = 9, .gimbal_tags = false}, .control = 0, .check = 0};
@@ -115,7 +106,7 @@ TEST(AdjustToTags, ChangesNothingThatItCannotAdjust) {
   Tag(0.02, 0.02, &made);
   const Eigen::Vector3d before = made.model.images[3].cam_from_world.translation;
   MadeControl few = made;
-  for (size_t i = 9; i < few.stations.size(); ++i) few.stations[i].gps.reset();
+  for (size_t i = 9; i < few.photos.size(); ++i) few.photos[i].gps.reset();
   EXPECT_EQ(AdjustToTags(JobOf(few), TwoThreads()).reason, "too few GPS tags");
   EXPECT_EQ(few.model.images[3].cam_from_world.translation, before);
   MadeControl blind = made;
@@ -134,8 +125,8 @@ TEST(AdjustToTags, TagsThatThePhotosContradictDoNotBend) {
   Tag(0.02, 0.02, &made);
   const geo::EnuFrame frame(kMadeOrigin);
   // Every other strip 6 m too far east: no lens does that.
-  for (size_t i = 0; i < made.stations.size(); ++i) {
-    if (i / 9 % 2 == 0) made.stations[i].gps = frame.GeodeticFromEnu(frame.EnuFromGeodetic(*made.stations[i].gps) + Eigen::Vector3d(6.0, 0.0, 0.0));
+  for (size_t i = 0; i < made.photos.size(); ++i) {
+    if (i / 9 % 2 == 0) made.photos[i].gps = frame.GeodeticFromEnu(frame.EnuFromGeodetic(*made.photos[i].gps) + Eigen::Vector3d(6.0, 0.0, 0.0));
   }
   const AdjustedToTags result = AdjustToTags(JobOf(made), TwoThreads());
   ASSERT_TRUE(result.adjusted) << result.reason;

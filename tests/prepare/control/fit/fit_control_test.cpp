@@ -149,12 +149,12 @@ TEST(FitControl, FewPointsOrPointsOnOneLineAreRefusedOrOnlyCompared) {
     const Eigen::Vector3d x(10.0 + 15.0 * static_cast<double>(i), 56.0, 0.0);
     line.control.points[i].place = frame.GeodeticFromEnu(x);
     line.control.points[i].marks.clear();
-    for (size_t k = 0; k < line.stations.size() && line.control.points[i].marks.size() < 5; ++k) {
+    for (size_t k = 0; k < line.photos.size() && line.control.points[i].marks.size() < 5; ++k) {
       const auto pixel =
           camera::Camera{camera::CameraModel::kOpencv, 1600, 1200, {1250.0, 1250.0, 800.0, 600.0, -0.03, 0.01, 3e-4, -2e-4}}.ImgFromCam(
               line.true_poses[k] * x);
       if (pixel && pixel->minCoeff() > 0.0 && pixel->x() < 1600.0 && pixel->y() < 1200.0) {
-        line.control.points[i].marks.push_back({line.stations[k].name, *pixel, 0});
+        line.control.points[i].marks.push_back({line.photos[k].file.name, *pixel, 0});
       }
     }
   }

@@ -56,12 +56,9 @@ MadeControl MakeControl(const ControlPlan& plan, base::ThreadPool& threads) {
     const survey::ColmapImage& image = made.model.images[i];
     made.true_poses.push_back(survey.cam_from_enu[image.id - 1]);
     cameras.push_back(&survey.cameras[image.camera_id - 1]);
-    prepare::input::Station station;
-    station.name = image.name;
-    station.cam_from_model = image.cam_from_world;
-    if (plan.tags) station.gps = survey.input.photos[image.id - 1].gps;
-    made.stations.push_back(std::move(station));
-    made.image_of_station.push_back(i);
+    prepare::input::PreparedPhoto photo = prepare::input::PreparePhoto({.name = image.name}, i, image.cam_from_world);
+    if (plan.tags) photo.gps = survey.input.photos[image.id - 1].gps;
+    made.photos.push_back(std::move(photo));
   }
   base::Random random(plan.seed, 7);
   made.control.file = "targets.txt";
@@ -91,7 +88,7 @@ MadeControl MakeControl(const ControlPlan& plan, base::ThreadPool& threads) {
       if (!pixel || pixel->x() < 5.0 || pixel->y() < 5.0 || pixel->x() > 1595.0 || pixel->y() > 1195.0) continue;
       const double noise_y = plan.mark_noise_px * random.Normal(), noise_x = plan.mark_noise_px * random.Normal();
       const Eigen::Vector2d at = *pixel + Eigen::Vector2d(noise_x, noise_y);
-      point.marks.push_back({made.stations[photo].name, at, 0});
+      point.marks.push_back({made.photos[photo].file.name, at, 0});
       if (static_cast<int>(point.marks.size()) == plan.marks) break;
     }
     made.control.points.push_back(std::move(point));

@@ -8,7 +8,7 @@
 #include "core/survey/colmap_model.h"
 #include "prepare/control/fit/fit_control.h"
 #include "prepare/control/reading/control_points.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 #include "tests/prepare/poses/seed/made_survey.h"
 
 namespace skyquilt::test {
@@ -29,15 +29,12 @@ struct ControlPlan {
 struct MadeControl {
   survey::ColmapModel model;
   survey::ColmapObservations observations;
-  std::vector<prepare::input::Station> stations;
-  std::vector<size_t> image_of_station;
+  std::vector<prepare::input::PreparedPhoto> photos;
   prepare::control::ControlPoints control;
   std::vector<geo::Rigid3d> true_poses;  // of the model's images, likewise
   double true_focal_px = 0.0;
 
-  prepare::control::ControlJob Job() {
-    return {.model = model, .observations = observations, .stations = stations, .image_of_station = image_of_station, .control = control};
-  }
+  prepare::control::ControlJob Job() { return {.model = model, .observations = observations, .photos = photos, .control = control}; }
 };
 
 inline const geo::Geodetic kMadeOrigin = {47.3, 8.5, 500.0};

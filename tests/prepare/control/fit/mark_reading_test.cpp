@@ -20,8 +20,7 @@ const Eigen::Vector2i kPhotoSize(1600, 1200);
 struct Nadir {
   survey::ColmapModel model;
   survey::ColmapObservations no_ties;
-  std::vector<input::Station> stations;
-  std::vector<size_t> images;
+  std::vector<input::PreparedPhoto> photos;
   ControlPoints control;
 
   Nadir() {
@@ -37,11 +36,7 @@ struct Nadir {
       image.camera_id = 1;
       image.name = "photo_" + std::to_string(i) + ".jpg";
       image.cam_from_world = {rotation, -(rotation * centre)};
-      input::Station station;
-      station.name = image.name;
-      station.cam_from_model = image.cam_from_world;
-      stations.push_back(station);
-      images.push_back(static_cast<size_t>(i));
+      photos.push_back(input::PreparePhoto({.name = image.name}, static_cast<size_t>(i), image.cam_from_world));
       model.images.push_back(image);
     }
     base::Random random(5);
@@ -70,9 +65,7 @@ struct Nadir {
       }
     }
   }
-  ReadingVotes Votes() {
-    return CountReadings({.model = model, .observations = no_ties, .stations = stations, .image_of_station = images, .control = control});
-  }
+  ReadingVotes Votes() { return CountReadings({.model = model, .observations = no_ties, .photos = photos, .control = control}); }
 };
 
 double FarthestFrom(const ControlPoints& a, const ControlPoints& b) {
@@ -111,8 +104,7 @@ TEST(MarkReading, IsUndecidedWithoutPosesAndKeepsTheMarks) {
   Nadir made;
   made.Turn(kTurnedBy180, 1, true);
   const ControlPoints written = made.control;
-  made.stations.clear();
-  made.images.clear();
+  made.photos.clear();
   const ReadingVotes votes = made.Votes();
   EXPECT_EQ(votes.n_stored, 0U);
   EXPECT_EQ(votes.n_upright, 0U);

@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "core/base/random.h"
-#include "tests/prepare/georeference/made_stations.h"
+#include "tests/prepare/georeference/lawnmower_photos.h"
 
 namespace skyquilt::test {
 namespace {

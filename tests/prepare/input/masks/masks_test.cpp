@@ -52,7 +52,7 @@ class Masks : public ::testing::Test {
       image::ReadImageSize(input.photo_root / name, &photo.width, &photo.height);
       photos_.push_back(photo);
     }
-    found_ = FindMasks(input.photo_root, input.masks, photos_, out(), files_, folder_.threads());
+    found_ = FindMasks(input.photo_root, input.masks, out(), photos_, files_, folder_.threads());
     return found_;
   }
   // Where the photo's mask came from; empty: it has none.
@@ -77,8 +77,9 @@ TEST_F(Masks, OfColmapsNamesInOneFolderStayWhereTheyAre) {
   Mask("masks/sub/b.JPG.png");
   Find();
   EXPECT_EQ(found_.folder, folder_.path() / "masks");
-  EXPECT_EQ(found_.files,
-            (std::vector<std::string>{(folder_.path() / "masks/a.jpg.png").string(), "", (folder_.path() / "masks/sub/b.JPG.png").string()}));
+  EXPECT_EQ(photos_[0].mask, (folder_.path() / "masks/a.jpg.png").string());
+  EXPECT_EQ(photos_[1].mask, "");
+  EXPECT_EQ(photos_[2].mask, (folder_.path() / "masks/sub/b.JPG.png").string());
   EXPECT_EQ(OriginOf("sub/b.JPG"), "masks/sub/b.JPG.png");
   EXPECT_FALSE(fs::exists(out()));
 }

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 #include "prepare/poses/seed/seed_survey.h"
 #include "tests/prepare/poses/seed/made_survey.h"
 

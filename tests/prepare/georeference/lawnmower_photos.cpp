@@ -1,4 +1,4 @@
-#include "tests/prepare/georeference/made_stations.h"
+#include "tests/prepare/georeference/lawnmower_photos.h"
 
 #include <cmath>
 #include <numbers>
@@ -29,11 +29,11 @@ geo::Similarity3d RandomFrame(base::Random& random) {
   return {std::exp(random.Uniform(-3.0, 3.0)), rotation.normalized(), Vector3d{random.Normal(), random.Normal(), random.Normal()}};
 }
 
-prepare::input::Station StationAt(const Vector3d& centre_in_enu, const Attitude& attitude, const geo::Similarity3d& model_from_enu) {
-  prepare::input::Station station;
+prepare::input::PreparedPhoto PreparedAt(const Vector3d& centre_in_enu, const Attitude& attitude, const geo::Similarity3d& model_from_enu) {
+  prepare::input::PreparedPhoto photo;
   const Eigen::Quaterniond rotation = CamFromEnu(attitude);
-  station.cam_from_model = geo::TransformCameraWorld({rotation, -(rotation * centre_in_enu)}, model_from_enu);
-  return station;
+  photo.cam_from_model = geo::TransformCameraWorld({rotation, -(rotation * centre_in_enu)}, model_from_enu);
+  return photo;
 }
 
 Eigen::Quaterniond SmallRotation(double sigma_deg, base::Random& random) {
@@ -49,15 +49,15 @@ Vector3d OnLawnmower(int photo, int n_photos) {
   return {kStep_m * (line - middle), kStep_m * (along - 0.5 * (kLine - 1)), 60.0};
 }
 
-std::vector<prepare::input::Station> LawnmowerStations(int n_photos, const geo::Similarity3d& model_from_enu) {
-  std::vector<prepare::input::Station> stations;
-  stations.reserve(static_cast<size_t>(n_photos));
+std::vector<prepare::input::PreparedPhoto> LawnmowerPhotos(int n_photos, const geo::Similarity3d& model_from_enu) {
+  std::vector<prepare::input::PreparedPhoto> photos;
+  photos.reserve(static_cast<size_t>(n_photos));
   for (int i = 0; i < n_photos; ++i) {
     const double yaw_deg = (i / kLine) % 2 == 0 ? 0.0 : 180.0;
-    stations.push_back(StationAt(OnLawnmower(i, n_photos), {.yaw_deg = yaw_deg}, model_from_enu));
-    stations.back().time_s = 1e9 + kPhotoInterval_s * i;
+    photos.push_back(PreparedAt(OnLawnmower(i, n_photos), {.yaw_deg = yaw_deg}, model_from_enu));
+    photos.back().file.tags.capture_time_s = 1e9 + kPhotoInterval_s * i;
   }
-  return stations;
+  return photos;
 }
 
 double AngleDeg(const Vector3d& a, const Vector3d& b) {

@@ -1,4 +1,4 @@
-// Stations with known attitudes in an arbitrary model frame, for tests of single parts of the geo-reference.
+// Photos with known attitudes in an arbitrary model frame, for tests of single parts of the geo-reference.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,7 +6,7 @@
 
 #include "core/base/random.h"
 #include "core/geo/transform.h"
-#include "prepare/input/station.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::test {
 
@@ -22,7 +22,7 @@ Eigen::Quaterniond CamFromEnu(const Attitude& attitude);
 
 geo::Similarity3d RandomFrame(base::Random& random);
 
-prepare::input::Station StationAt(const Eigen::Vector3d& centre_in_enu, const Attitude& attitude, const geo::Similarity3d& model_from_enu);
+prepare::input::PreparedPhoto PreparedAt(const Eigen::Vector3d& centre_in_enu, const Attitude& attitude, const geo::Similarity3d& model_from_enu);
 
 // A rotation of normal noise about all three axes.
 Eigen::Quaterniond SmallRotation(double sigma_deg, base::Random& random);
@@ -32,7 +32,7 @@ constexpr int kLine = 10;
 constexpr double kPhotoInterval_s = 3.0;
 Eigen::Vector3d OnLawnmower(int photo, int n_photos);
 // Along the lawnmower: looking straight down in the direction of flight, with capture times, without GPS.
-std::vector<prepare::input::Station> LawnmowerStations(int n_photos, const geo::Similarity3d& model_from_enu);
+std::vector<prepare::input::PreparedPhoto> LawnmowerPhotos(int n_photos, const geo::Similarity3d& model_from_enu);
 
 double AngleDeg(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 

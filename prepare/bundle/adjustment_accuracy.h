@@ -1,6 +1,7 @@
 // How accurate the result of a bundle adjustment is, from its normal equations (Triggs et al., Bundle Adjustment - A Modern Synthesis, 2000, section
 // 6): the points are eliminated, what remains of photos, lenses and the tags' common shift is factored (sparse Cholesky), and only the parts of the
-// inverse that are asked for are computed. Terms count with the weight that their loss leaves them.
+// inverse that are asked for are computed. Terms count with the weight that their loss leaves them. ceres::Covariance gives blocks of the inverse
+// only, of unknowns of the adjustment: check points have no part in it, and the survey as a whole would need the blocks of every pair of photos.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,8 @@
 // How well the photos of a survey determine the lens: the standard deviation of the first radial distortion coefficient, which COLMAP does not write.
 // It follows from the normal equations of the bundle adjustment (Triggs et al., Bundle Adjustment - A Modern Synthesis, 2000, section 6 and appendix
 // A): poses, camera parameters and points are unknowns, points are eliminated, the seven degrees of freedom of the frame are held.
+// ceres::Covariance cannot say it where the photos do not determine the lens: by sparse QR it fails there, by SVD it needs all points in one dense
+// matrix.
 #pragma once
 
 #include <cstdint>

@@ -75,13 +75,13 @@ size_t NearestInTime(const std::vector<input::PreparedPhoto>& photos, size_t pho
 }
 
 // The camera less its tag, corrected as another one's.
-Eigen::Vector3d ResidualAs(const input::PreparedPhoto& photo, size_t other, const georeference::Georeference& georeference) {
+Eigen::Vector3d ResidualAs(const input::PreparedPhoto& photo, const georeference::TagFit& other, const georeference::Georeference& georeference) {
   const geo::EnuFrame frame(georeference.origin);
   geo::Geodetic tag = *photo.gps;
-  const bool has_height = std::isfinite(tag.height_m) && std::isfinite(georeference.residual_m[other].z());
+  const bool has_height = std::isfinite(tag.height_m) && std::isfinite(other.residual_m.z());
   if (!has_height) tag.height_m = georeference.origin.height_m;
   Eigen::Vector3d residual = georeference.enu_from_model * photo.cam_from_model.OriginInSource() - frame.EnuFromGeodetic(tag);
-  residual -= georeference.correction_m[other];
+  residual -= other.correction_m;
   if (!has_height) residual.z() = std::numeric_limits<double>::quiet_NaN();
   return residual;
 }
@@ -161,34 +161,24 @@ std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::Co
 }
 
 void AddResected(const std::vector<input::PreparedPhoto>& photos, const std::set<std::string>& resected, georeference::Georeference& georeference) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const size_t n = photos.size();
-  georeference::Georeference all = georeference;
-  all.flight.assign(n, 0);
-  all.correction_m.assign(n, Eigen::Vector3d::Zero());
-  all.residual_m.assign(n, Eigen::Vector3d::Constant(unknown));
-  all.inlier.assign(n, 0);
+  std::vector<georeference::TagFit> all(photos.size());
   std::vector<size_t> others, tagged;
-  for (size_t i = 0; i < n; ++i) {
+  for (size_t i = 0; i < photos.size(); ++i) {
     if (resected.contains(photos[i].file.name)) continue;
-    const size_t k = others.size();
-    SKYQUILT_CHECK(k < georeference.flight.size(), "one entry per photo with a part in the geo-reference");
-    all.flight[i] = georeference.flight[k];
-    all.correction_m[i] = georeference.correction_m[k];
-    all.residual_m[i] = georeference.residual_m[k];
-    all.inlier[i] = georeference.inlier[k];
+    SKYQUILT_CHECK(others.size() < georeference.photos.size(), "one entry per photo with a part in the geo-reference");
+    all[i] = georeference.photos[others.size()];
     others.push_back(i);
     if (photos[i].gps) tagged.push_back(i);
   }
-  for (size_t i = 0; i < n; ++i) {
+  for (size_t i = 0; i < photos.size(); ++i) {
     if (!resected.contains(photos[i].file.name)) continue;
-    all.flight[i] = all.flight[NearestInTime(photos, i, others)];
+    all[i].flight = all[NearestInTime(photos, i, others)].flight;
     if (!georeference.ok || !photos[i].gps || tagged.empty()) continue;
-    const size_t like = NearestInTime(photos, i, tagged);
-    all.correction_m[i] = all.correction_m[like];
-    all.residual_m[i] = ResidualAs(photos[i], like, all);
+    const georeference::TagFit& like = all[NearestInTime(photos, i, tagged)];
+    all[i].correction_m = like.correction_m;
+    all[i].residual_m = ResidualAs(photos[i], like, georeference);
   }
-  georeference = std::move(all);
+  georeference.photos = std::move(all);
 }
 
 }  // namespace skyquilt::prepare

@@ -37,7 +37,7 @@ std::optional<WithheldPhotos> WithholdPhotos(const std::unordered_set<uint32_t>&
 // (bundle/resect.h) such points stay out; returns their names.
 std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::ColmapModel& model);
 
-// Adds photos that had no part in a geo-reference to its lists, which afterwards are in the order of `photos`. `resected`: names that include
+// Adds photos that had no part in a geo-reference to its list, which afterwards is in the order of `photos`. `resected`: names that include
 // theirs and of the others none. Their tags count as not agreeing; each is compared with its photo as that of the photo nearest to it in time was.
 void AddResected(const std::vector<input::PreparedPhoto>& photos, const std::set<std::string>& resected, georeference::Georeference& georeference);
 

@@ -129,11 +129,11 @@ void FillPhotos(const survey::ColmapModel& model, const std::vector<input::Prepa
     photo.relative_altitude_m = file.tags.relative_altitude_m;
     if (file.tags.capture_time_s) photo.time_s = *file.tags.capture_time_s - *first_time_s;
     photo.exposure = file.tags.exposure;
-    photo.gps_correction_m = georeference.correction_m[i];
-    const Eigen::Vector3d& residual = georeference.residual_m[i];
-    photo.gps_residual_m = std::isnan(residual.z()) ? residual.head<2>().norm() : residual.norm();
-    photo.gps_inlier = georeference.inlier[i] != 0;
-    photo.flight = georeference.flight[i];
+    const georeference::TagFit& fit = georeference.photos[i];
+    photo.gps_correction_m = fit.correction_m;
+    photo.gps_residual_m = std::isnan(fit.residual_m.z()) ? fit.residual_m.head<2>().norm() : fit.residual_m.norm();
+    photo.gps_inlier = fit.inlier;
+    photo.flight = fit.flight;
     survey.photos.push_back(std::move(photo));
   }
 }

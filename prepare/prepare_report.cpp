@@ -131,7 +131,7 @@ void WriteResidualTable(const survey::Survey& survey, const georeference::Georef
     text += photo.gps ? tables::CsvNumber(photo.gps->latitude_deg, 9) + "," + tables::CsvNumber(photo.gps->longitude_deg, 9) + "," +
                             tables::CsvNumber(photo.gps->height_m, 3) + ","
                       : ",,,";
-    for (const Eigen::Vector3d& v : {photo.gps_correction_m, georeference.residual_m[i]}) {
+    for (const Eigen::Vector3d& v : {photo.gps_correction_m, georeference.photos[i].residual_m}) {
       for (const double value : {v.x(), v.y(), v.z()}) text += tables::CsvNumber(value, 3) + ",";
     }
     text += tables::CsvNumber(photo.gps_residual_m, 3) + "," + (photo.gps_inlier ? "1" : "0") + "," + std::to_string(photo.flight) + "," +

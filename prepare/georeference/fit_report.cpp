@@ -84,7 +84,8 @@ void ReportBias(const std::vector<int>& flight, const std::vector<Tag>& tags, co
 SecondGroup FindSecondGroup(const std::vector<Tag>& tags, const Georeference& result, double noise_m) {
   std::vector<Vector2d> others;
   for (const Tag& tag : tags) {
-    if (result.inlier[tag.photo] == 0) others.emplace_back(result.residual_m[tag.photo].head<2>());
+    const TagFit& fit = result.photos[tag.photo];
+    if (!fit.inlier) others.emplace_back(fit.residual_m.head<2>());
   }
   const double radius_m = std::max(kLeastGroupRadius_m, kGroupSigmas * noise_m);
   SecondGroup best;

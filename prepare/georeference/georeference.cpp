@@ -35,10 +35,11 @@ constexpr double kLagSigma_s = 1.5;
 constexpr double kRtkLagSigma_s = 0.05;
 constexpr double kMaxUsefulSigma_deg = 5.0;
 
-void Clear(size_t n, Georeference& result) {
-  result.correction_m.assign(n, Vector3d::Zero());
-  result.residual_m.assign(n, Vector3d::Constant(kNan));
-  result.inlier.assign(n, 0);
+// Of photos without tags.
+std::vector<TagFit> NoFits(const std::vector<int>& flight) {
+  std::vector<TagFit> fits;
+  for (const int number : flight) fits.push_back({.flight = number});
+  return fits;
 }
 
 // Residuals and the errors of the fit, from the transform and the corrections in `result`.
@@ -50,13 +51,13 @@ void Evaluate(const std::vector<input::PreparedPhoto>& photos, const std::vector
   double horizontal = 0.0, vertical = 0.0;
   int n_heights = 0;
   for (const Tag& tag : tags) {
-    const size_t i = tag.photo;
-    const Vector3d centre = result.enu_from_model * photos[i].cam_from_model.OriginInSource();
-    const Vector3d residual = centre - (tag.x_in_enu + result.correction_m[i]);
-    result.residual_m[i] = residual;
+    TagFit& of_photo = result.photos[tag.photo];
+    const Vector3d centre = result.enu_from_model * photos[tag.photo].cam_from_model.OriginInSource();
+    const Vector3d residual = centre - (tag.x_in_enu + of_photo.correction_m);
+    of_photo.residual_m = residual;
     const bool has_height = std::isfinite(residual.z());
     const bool agrees = residual.head<2>().norm() <= threshold_m && (!has_height || std::abs(residual.z()) <= threshold_m);
-    result.inlier[i] = agrees ? 1 : 0;
+    of_photo.inlier = agrees;
     if (!agrees) continue;
     ++fit.n_inliers;
     horizontal += residual.head<2>().squaredNorm();
@@ -179,7 +180,7 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
     const Vector3d moved =
         adjustment.enu_from_model.scale *
         (adjustment.enu_from_model.rotation * (flight.photos[i].cam_from_model.OriginInSource() - flight.track.Before(i, adjustment.lag_s).position));
-    result.correction_m[i] = moved - adjustment.bias_m[k] * Vector3d::UnitZ();
+    result.photos[i].correction_m = moved - adjustment.bias_m[k] * Vector3d::UnitZ();
     low = std::min(low, adjustment.bias_m[k]);
     high = std::max(high, adjustment.bias_m[k]);
   }
@@ -216,7 +217,7 @@ void FitTags(const TaggedFlight& flight, const Gravity& gravity, HeightTags heig
                          .second_group = second.n,
                          .second_group_m = second.distance_m};
   for (const Tag& tag : tags) {
-    if (result.inlier[tag.photo] == 0) findings.disagreeing.push_back(flight.photos[tag.photo].file.name);
+    if (!result.photos[tag.photo].inlier) findings.disagreeing.push_back(flight.photos[tag.photo].file.name);
   }
   std::sort(findings.disagreeing.begin(), findings.disagreeing.end());
   result.problems = PlaceProblems(findings);
@@ -258,8 +259,8 @@ Georeference PlaceOnEarth(const std::vector<input::PreparedPhoto>& given, const 
   const std::vector<input::PreparedPhoto> without_angles =
       result.gimbal.use == GimbalUse::kDropped ? WithoutAngles(given) : std::vector<input::PreparedPhoto>();
   const std::vector<input::PreparedPhoto>& photos = result.gimbal.use == GimbalUse::kDropped ? without_angles : given;
-  result.flight = input::SplitFlights(photos, options.flight_gap_s);
-  Clear(photos.size(), result);
+  const std::vector<int> flight_of_photo = input::SplitFlights(photos, options.flight_gap_s);
+  result.photos = NoFits(flight_of_photo);
   const Gravity gravity = FindGravity(photos, points);
   const auto n_tagged = std::count_if(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.gps.has_value(); });
   result.fit.n_matches = static_cast<int>(n_tagged);
@@ -274,8 +275,8 @@ Georeference PlaceOnEarth(const std::vector<input::PreparedPhoto>& given, const 
     result.problems.push_back(OnePlaceProblem(photos, gravity));
   } else {
     result.origin = MedianPosition(photos);
-    const Track track(photos, result.flight);
-    const TaggedFlight flight{photos, track, result.flight, options};
+    const Track track(photos, flight_of_photo);
+    const TaggedFlight flight{photos, track, flight_of_photo, options};
     FitTags(flight, gravity, JudgeHeights(photos), result);
     if (2 * result.fit.n_inliers < result.fit.n_matches) {
       if (const auto fault = CoordinateProblem(flight, gravity, result.fit.n_matches)) {
@@ -290,7 +291,7 @@ Georeference PlaceOnEarth(const std::vector<input::PreparedPhoto>& given, const 
   }
   if (!result.ok) {
     result.origin = {};
-    Clear(photos.size(), result);
+    result.photos = NoFits(flight_of_photo);
     result.enu_from_model = LocalFrame(photos, points, gravity.up);
     // Residuals, corrections and accuracies of a fit that was refused say nothing about the local frame.
     const survey::GeoFit refused = result.fit;
@@ -309,14 +310,14 @@ Georeference KeepExactFrame(const std::vector<input::PreparedPhoto>& photos, con
   Georeference result;
   result.ok = true;
   result.origin = origin;
-  result.flight = input::SplitFlights(photos, options.flight_gap_s);
-  Clear(photos.size(), result);
-  const Track track(photos, result.flight);
+  const std::vector<int> flight_of_photo = input::SplitFlights(photos, options.flight_gap_s);
+  result.photos = NoFits(flight_of_photo);
+  const Track track(photos, flight_of_photo);
   Evaluate(photos, CollectTags(photos, track.order(), origin, HeightTags::kTagged), options.ransac_threshold_m, result);
   result.fit.accuracy = {.scale_percent = 0.0, .tilt_deg = 0.0, .yaw_deg = 0.0, .horizontal_m = 0.0, .vertical_m = 0.0};
   PlaceFindings findings{.fit = result.fit, .gimbal_used = true};
   for (size_t i = 0; i < photos.size(); ++i) {
-    if (photos[i].gps && result.inlier[i] == 0) findings.disagreeing.push_back(photos[i].file.name);
+    if (photos[i].gps && !result.photos[i].inlier) findings.disagreeing.push_back(photos[i].file.name);
   }
   result.problems = PlaceProblems(findings);
   return result;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "core/geo/geodetic.h"
@@ -17,18 +18,23 @@
 
 namespace skyquilt::prepare::georeference {
 
+// How a photo's tag fits; zero and NaN without GPS or geo-reference.
+struct TagFit {
+  int flight = 0;                                          // of the photo, from 0
+  Eigen::Vector3d correction_m = Eigen::Vector3d::Zero();  // what the fit adds to the tag, ENU
+  // Fitted camera less corrected tag, ENU; z is NaN where heights are not used.
+  Eigen::Vector3d residual_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  bool inlier = false;  // the tag agrees within the threshold
+};
+
 struct Georeference {
   bool ok = false;  // false: levelled local frame, unknown scale; the first problem says why
   geo::Geodetic origin;
   geo::Similarity3d enu_from_model;
   survey::GeoFit fit;
   std::vector<survey::Problem> problems;
-  GimbalVerdict gimbal;     // dropped angles have no part in the result
-  std::vector<int> flight;  // per photo, from 0
-  // Per photo; zero and NaN without GPS or geo-reference.
-  std::vector<Eigen::Vector3d> correction_m;  // what the fit adds to the tag, ENU
-  std::vector<Eigen::Vector3d> residual_m;    // fitted camera less corrected tag, ENU; z is NaN where heights are not used
-  std::vector<char> inlier;                   // 1 if the tag agrees within the threshold
+  GimbalVerdict gimbal;        // dropped angles have no part in the result
+  std::vector<TagFit> photos;  // in their order
 };
 
 // `points` are the sparse points in the model's frame, may be empty. Gimbal angles that stand alone against the photos and the tagged positions are

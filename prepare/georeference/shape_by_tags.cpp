@@ -22,10 +22,6 @@ namespace {
 
 constexpr double kBendSigmas = 3.0;
 
-bool Agrees(const Georeference& georeference, size_t photo) {
-  return georeference.inlier[photo] != 0;
-}
-
 bool MostAreRtk(const std::vector<input::PreparedPhoto>& photos) {
   const auto tagged = std::count_if(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.gps.has_value(); });
   const auto rtk = std::count_if(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.gps.has_value() && photo.rtk; });
@@ -39,9 +35,9 @@ Dome BendOf(const std::vector<input::PreparedPhoto>& photos, const Georeference&
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return time(a) < time(b); });
   std::vector<HeightDifference> differences;
   for (const size_t i : order) {
-    if (!Agrees(georeference, i)) continue;
+    if (!georeference.photos[i].inlier) continue;
     const Eigen::Vector3d centre = georeference.enu_from_model * photos[i].cam_from_model.OriginInSource();
-    differences.push_back({centre.head<2>(), georeference.residual_m[i].z()});
+    differences.push_back({centre.head<2>(), georeference.photos[i].residual_m.z()});
   }
   return FitDome(differences);
 }
@@ -52,12 +48,13 @@ std::vector<input::PreparedPhoto> Corrected(const std::vector<input::PreparedPho
   std::vector<input::PreparedPhoto> corrected = photos;
   for (size_t i = 0; i < photos.size(); ++i) {
     std::optional<geo::Geodetic>& tag = corrected[i].gps;
-    if (!Agrees(georeference, i)) tag.reset();
+    const TagFit& fit = georeference.photos[i];
+    if (!fit.inlier) tag.reset();
     if (!tag) continue;
-    const bool has_height = std::isfinite(tag->height_m) && std::isfinite(georeference.residual_m[i].z());
+    const bool has_height = std::isfinite(tag->height_m) && std::isfinite(fit.residual_m.z());
     geo::Geodetic place = *tag;
     if (!has_height) place.height_m = georeference.origin.height_m;
-    *tag = frame.GeodeticFromEnu(frame.EnuFromGeodetic(place) + georeference.correction_m[i]);
+    *tag = frame.GeodeticFromEnu(frame.EnuFromGeodetic(place) + fit.correction_m);
     if (!has_height) tag->height_m = std::numeric_limits<double>::quiet_NaN();
   }
   return corrected;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
@@ -262,25 +263,29 @@ TEST(HoldoutPoses, TagsOfResectedPhotosAreComparedAsTheirNeighbours) {
   georeference::Georeference georeference;
   georeference.ok = true;
   georeference.origin = frame.origin();
-  georeference.flight = {0, 0, 1};  // of photos 1, 2 and 4
-  georeference.correction_m = {{0.0, -1.0, 0.0}, {0.0, -1.0, 0.5}, {0.0, -0.5, 2.0}};
-  georeference.residual_m.assign(3, Eigen::Vector3d(0.1, 0.1, 0.1));
-  georeference.inlier.assign(3, 1);
+  const Eigen::Vector3d residual_m(0.1, 0.1, 0.1);
+  // Of photos 1, 2 and 4.
+  georeference.photos = {{0, {0.0, -1.0, 0.0}, residual_m, true}, {0, {0.0, -1.0, 0.5}, residual_m, true}, {1, {0.0, -0.5, 2.0}, residual_m, true}};
   georeference::Georeference local = georeference;
   AddResected(photos, {"0", "3"}, georeference);
-  EXPECT_EQ(georeference.flight, (std::vector<int>{1, 0, 0, 0, 1}));
-  EXPECT_EQ(georeference.inlier, (std::vector<char>{0, 1, 1, 0, 1}));
-  EXPECT_EQ(georeference.correction_m[0], Eigen::Vector3d(0.0, -0.5, 2.0));
-  EXPECT_EQ(georeference.correction_m[2], Eigen::Vector3d(0.0, -1.0, 0.5));
-  EXPECT_EQ(georeference.residual_m[4], Eigen::Vector3d(0.1, 0.1, 0.1));
-  EXPECT_LT((georeference.residual_m[0] - Eigen::Vector3d(0.0, -0.5, 0.0)).norm(), 1e-6);
-  EXPECT_LT(georeference.residual_m[3].head<2>().norm(), 1e-3);
-  EXPECT_TRUE(std::isnan(georeference.residual_m[3].z()));
+  const std::vector<georeference::TagFit>& fits = georeference.photos;
+  ASSERT_EQ(fits.size(), 5U);
+  const std::array<int, 5> flight{1, 0, 0, 0, 1};
+  for (size_t i = 0; i < fits.size(); ++i) {
+    EXPECT_EQ(fits[i].flight, flight[i]);
+    EXPECT_EQ(fits[i].inlier, i != 0 && i != 3);
+  }
+  EXPECT_EQ(fits[0].correction_m, Eigen::Vector3d(0.0, -0.5, 2.0));
+  EXPECT_EQ(fits[2].correction_m, Eigen::Vector3d(0.0, -1.0, 0.5));
+  EXPECT_EQ(fits[4].residual_m, residual_m);
+  EXPECT_LT((fits[0].residual_m - Eigen::Vector3d(0.0, -0.5, 0.0)).norm(), 1e-6);
+  EXPECT_LT(fits[3].residual_m.head<2>().norm(), 1e-3);
+  EXPECT_TRUE(std::isnan(fits[3].residual_m.z()));
 
   local.ok = false;
   AddResected(photos, {"0", "3"}, local);
-  EXPECT_TRUE(std::isnan(local.residual_m[0].x()));
-  EXPECT_EQ(local.correction_m[0], Eigen::Vector3d::Zero());
+  EXPECT_TRUE(std::isnan(local.photos[0].residual_m.x()));
+  EXPECT_EQ(local.photos[0].correction_m, Eigen::Vector3d::Zero());
 }
 
 }  // namespace

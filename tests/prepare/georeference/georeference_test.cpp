@@ -61,8 +61,8 @@ TEST(Georeference, OutliersAreFoundAndDoNotPull) {
   EXPECT_EQ(result.fit.n_matches, 20);
   EXPECT_EQ(result.fit.n_inliers, 16);
   EXPECT_LT(result.fit.rmse_m, 1e-3);
-  for (size_t i = 0; i < 20; ++i) EXPECT_EQ(result.inlier[i] != 0, i % 5 != 2);
-  EXPECT_GT(result.residual_m[2].norm(), 300.0);
+  for (size_t i = 0; i < 20; ++i) EXPECT_EQ(result.photos[i].inlier, i % 5 != 2);
+  EXPECT_GT(result.photos[2].residual_m.norm(), 300.0);
 }
 
 TEST(Georeference, ARefusedFitLeavesNoAccuracyBehind) {
@@ -139,8 +139,8 @@ TEST(Georeference, FlightsThatAgreeAreNotMovedApart) {
     return Eigen::Vector3d(centre + Eigen::Vector3d{random.Normal(), random.Normal(), 2.0 * random.Normal()});
   });
   const Georeference result = Place(flight);
-  EXPECT_EQ(result.flight[9], 0);
-  EXPECT_EQ(result.flight[10], 1);
+  EXPECT_EQ(result.photos[9].flight, 0);
+  EXPECT_EQ(result.photos[10].flight, 1);
   for (const double offset_m : result.fit.flight_vertical_offset_m) EXPECT_LT(std::abs(offset_m), 2.0);
   for (const double drift_m : result.fit.flight_vertical_drift_m) EXPECT_LT(std::abs(drift_m), 2.0);
 }

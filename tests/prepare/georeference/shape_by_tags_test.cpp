@@ -24,9 +24,7 @@ void MakeFlight(double dome_m, double noise_m, std::vector<prepare::input::Prepa
     photo.file.tags.capture_time_s = 2.0 * i;
     photos->push_back(photo);
     const double square = centre.head<2>().squaredNorm() / (90.0 * 90.0);
-    georeference->residual_m.emplace_back(0.0, 0.0, -dome_m * square + noise_m * random.Normal());
-    georeference->correction_m.push_back(Eigen::Vector3d::Zero());
-    georeference->inlier.push_back(1);
+    georeference->photos.push_back({.residual_m = {0.0, 0.0, -dome_m * square + noise_m * random.Normal()}, .inlier = true});
   }
 }
 
@@ -54,7 +52,7 @@ TEST(TagsTellTheShape, NotWithoutHeights) {
   std::vector<prepare::input::PreparedPhoto> photos;
   Georeference georeference;
   MakeFlight(2.0, 0.1, &photos, &georeference);
-  for (Eigen::Vector3d& residual : georeference.residual_m) residual.z() = std::numeric_limits<double>::quiet_NaN();
+  for (TagFit& fit : georeference.photos) fit.residual_m.z() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(TagsTellTheShape(photos, georeference));
 }
 

@@ -172,10 +172,7 @@ double MeasureK1Sigma(const survey::ColmapModel& model, const fs::path& model_fo
 // projections.
 void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<input::PreparedPhoto>& photos,
                    bool has_observations, survey::Survey& survey) {
-  std::vector<const survey::PhotoTags*> tags;
-  tags.reserve(photos.size());
-  for (const input::PreparedPhoto& photo : photos) tags.push_back(&photo.file.tags);
-  survey.checks = georeference::CheckFlight(survey, tags);
+  survey.checks = georeference::CheckFlight(survey, photos);
   const auto main = std::find_if(survey.photos.begin(), survey.photos.end(),
                                  [camera = georeference::MainCamera(survey)](const survey::Photo& photo) { return photo.camera == camera; });
   if (has_observations && main != survey.photos.end()) {

@@ -22,19 +22,21 @@ constexpr double kMinDome_m = 1.0;
 constexpr double kMinDomeShareOfAgl = 0.01;
 constexpr const char* kTagged = "speed tags";
 
-double MedianTaggedSpeed(const std::vector<const survey::PhotoTags*>& tags) {
+double MedianTaggedSpeed(const std::vector<input::PreparedPhoto>& photos) {
   std::vector<double> speeds;
-  for (const survey::PhotoTags* tag : tags) {
-    if (tag->speed_mps && std::isfinite(*tag->speed_mps) && *tag->speed_mps >= 0.0) speeds.push_back(*tag->speed_mps);
+  for (const input::PreparedPhoto& photo : photos) {
+    const std::optional<double>& speed_mps = photo.file.tags.speed_mps;
+    if (speed_mps && std::isfinite(*speed_mps) && *speed_mps >= 0.0) speeds.push_back(*speed_mps);
   }
   return base::Median(speeds);
 }
 
 // The name that most photos of a camera have.
-std::string NameOfCamera(const survey::Survey& survey, const std::vector<const survey::PhotoTags*>& tags, int camera) {
+std::string NameOfCamera(const survey::Survey& survey, const std::vector<input::PreparedPhoto>& photos, int camera) {
   std::map<std::string, int> count;
-  for (size_t i = 0; i < tags.size(); ++i) {
-    if (survey.photos[i].camera == camera) ++count[CameraName(tags[i]->make, tags[i]->model)];
+  for (size_t i = 0; i < photos.size(); ++i) {
+    const survey::PhotoTags& tags = photos[i].file.tags;
+    if (survey.photos[i].camera == camera) ++count[CameraName(tags.make, tags.model)];
   }
   const auto most = std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == count.end() ? "" : most->first;
@@ -69,16 +71,16 @@ std::vector<HeightDifference> HeightDifferences(const survey::Survey& survey) {
   return differences;
 }
 
-void CheckSmear(const survey::Survey& survey, const std::vector<const survey::PhotoTags*>& tags, int camera_index, survey::FlightChecks& checks) {
+void CheckSmear(const survey::Survey& survey, const std::vector<input::PreparedPhoto>& photos, int camera_index, survey::FlightChecks& checks) {
   const camera::Camera& camera = survey.cameras[static_cast<size_t>(camera_index)];
-  checks.speed_mps = MedianTaggedSpeed(tags);
+  checks.speed_mps = MedianTaggedSpeed(photos);
   if (std::isfinite(checks.speed_mps)) {
     checks.speed_source = kTagged;
   } else if (survey.georeferenced) {
     checks.speed_mps = SpeedFromPositions(survey);
     if (std::isfinite(checks.speed_mps)) checks.speed_source = "positions and times";
   }
-  checks.camera_name = NameOfCamera(survey, tags, camera_index);
+  checks.camera_name = NameOfCamera(survey, photos, camera_index);
   checks.readout_ms = SensorReadout({checks.camera_name, camera.width, camera.height, MedianExposure(survey, camera_index)});
   const double agl_m = survey.MedianAgl();
   if (!survey.georeferenced || !(agl_m > 0.0)) return;
@@ -130,12 +132,12 @@ int MainCamera(const survey::Survey& survey) {
   return most == n_photos.end() || *most == 0 ? -1 : static_cast<int>(most - n_photos.begin());
 }
 
-survey::FlightChecks CheckFlight(const survey::Survey& survey, const std::vector<const survey::PhotoTags*>& tags) {
-  SKYQUILT_CHECK(tags.size() == survey.photos.size(), fmt::format("{} tags for {} photos", tags.size(), survey.photos.size()));
+survey::FlightChecks CheckFlight(const survey::Survey& survey, const std::vector<input::PreparedPhoto>& photos) {
+  SKYQUILT_CHECK(photos.size() == survey.photos.size(), fmt::format("{} prepared of {} photos", photos.size(), survey.photos.size()));
   survey::FlightChecks checks;
   const int camera_index = MainCamera(survey);
   if (camera_index < 0) return checks;
-  CheckSmear(survey, tags, camera_index, checks);
+  CheckSmear(survey, photos, camera_index, checks);
   if (survey.georeferenced) {
     const Dome dome = FitDome(HeightDifferences(survey));
     checks.dome_m = dome.height_m;

@@ -4,18 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "core/survey/exif.h"
 #include "core/survey/survey.h"
+#include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::georeference {
 
 // Index into Survey::cameras of the camera with most photos, the first of several; -1 without photos.
 int MainCamera(const survey::Survey& survey);
 
-// Fills in all but k1_sigma, which needs the 2-D observations (prepare/bundle/intrinsics_sigma.h). `tags` has one entry per photo of the survey.
+// Fills in all but k1_sigma, which needs the 2-D observations (prepare/bundle/intrinsics_sigma.h). `photos`: of the survey, in its order.
 // Photos must have their AGL and GPS corrections. The speed is the median of the speed tags; without any, that between photos, which is too high for
 // a drone that stops for each. Lengths are known only in geo-referenced surveys: in others all that needs metres stays NaN.
-survey::FlightChecks CheckFlight(const survey::Survey& survey, const std::vector<const survey::PhotoTags*>& tags);
+survey::FlightChecks CheckFlight(const survey::Survey& survey, const std::vector<input::PreparedPhoto>& photos);
 
 // What the checks found, the worst first: rolling_shutter (smear above kMaxSmear_px), doming (above 3 sigma, 1 m and 1 % of the height above ground),
 // lens_uncertain (one sigma of k1 moves the image corner by more than kMaxCornerShift_px).

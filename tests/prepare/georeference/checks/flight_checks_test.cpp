@@ -16,15 +16,9 @@ namespace {
 // Nadir photos on lines of 120 m length, 20 m apart, flown to and fro at 5 m/s and 50 m above ground. Times are as exact as wanted.
 struct Flight {
   survey::Survey survey;
-  std::vector<survey::PhotoTags> tags;
+  std::vector<input::PreparedPhoto> photos;
 
-  std::vector<const survey::PhotoTags*> TagList() const {
-    std::vector<const survey::PhotoTags*> list;
-    list.reserve(tags.size());
-    for (const survey::PhotoTags& tag : tags) list.push_back(&tag);
-    return list;
-  }
-  survey::FlightChecks Check() const { return CheckFlight(survey, TagList()); }
+  survey::FlightChecks Check() const { return CheckFlight(survey, photos); }
   std::vector<std::string> Codes() const {
     std::vector<std::string> codes;
     for (const survey::Problem& problem : FlightProblems(Check(), survey)) codes.push_back(problem.code);
@@ -56,10 +50,9 @@ Flight MakeFlight(int n_lines = 8) {
     photo.time_s = kInterval_s * static_cast<double>(flight.survey.photos.size());
     photo.agl_m = 50.0;
     flight.survey.photos.push_back(photo);
-    survey::PhotoTags tags;
+    survey::PhotoTags& tags = flight.photos.emplace_back().file.tags;
     tags.make = "DJI";
     tags.model = "FC300S";
-    flight.tags.push_back(tags);
   }
   return flight;
 }
@@ -71,8 +64,8 @@ void RaiseTags(Flight& flight, const std::function<double(const Eigen::Vector3d&
 
 TEST(FlightChecks, SpeedTagsComeFirst) {
   Flight flight = MakeFlight();
-  for (size_t i = 0; i < 9; ++i) flight.tags[i].speed_mps = static_cast<double>(i);
-  flight.tags[9].speed_mps = kNan;
+  for (size_t i = 0; i < 9; ++i) flight.photos[i].file.tags.speed_mps = static_cast<double>(i);
+  flight.photos[9].file.tags.speed_mps = kNan;
   const survey::FlightChecks checks = flight.Check();
   EXPECT_EQ(checks.speed_mps, 4.0);
   EXPECT_EQ(checks.speed_source, "speed tags");
@@ -120,7 +113,7 @@ TEST(FlightSpeed, IsUnknownWithoutTimes) {
 
 TEST(FlightChecks, SmearIsTheMotionDuringReadOut) {
   Flight flight = MakeFlight();
-  for (survey::PhotoTags& tags : flight.tags) tags.speed_mps = 4.0;
+  for (input::PreparedPhoto& photo : flight.photos) photo.file.tags.speed_mps = 4.0;
   const survey::FlightChecks checks = flight.Check();
   EXPECT_EQ(checks.camera_name, "DJI FC300S");
   EXPECT_EQ(checks.readout_ms, 33.0);
@@ -137,12 +130,12 @@ TEST(FlightChecks, SmearIsTheMotionDuringReadOut) {
 
 TEST(FlightChecks, SlowFlightsAndMechanicalShuttersAreNotWarnedOf) {
   Flight flight = MakeFlight();
-  for (survey::PhotoTags& tags : flight.tags) tags.speed_mps = 1.5;
+  for (input::PreparedPhoto& photo : flight.photos) photo.file.tags.speed_mps = 1.5;
   EXPECT_NEAR(flight.Check().smear_px, 0.99, 1e-9);
   EXPECT_TRUE(flight.Codes().empty());
-  for (survey::PhotoTags& tags : flight.tags) {
-    tags.speed_mps = 15.0;
-    tags.model = "FC6310R";
+  for (input::PreparedPhoto& photo : flight.photos) {
+    photo.file.tags.speed_mps = 15.0;
+    photo.file.tags.model = "FC6310R";
   }
   EXPECT_EQ(flight.Check().smear_px, 0.0);
   EXPECT_TRUE(flight.Codes().empty());
@@ -150,7 +143,7 @@ TEST(FlightChecks, SlowFlightsAndMechanicalShuttersAreNotWarnedOf) {
 
 TEST(FlightChecks, AnUnknownCameraIsNotWarnedOf) {
   Flight flight = MakeFlight();
-  for (survey::PhotoTags& tags : flight.tags) tags.model = "X-1";
+  for (input::PreparedPhoto& photo : flight.photos) photo.file.tags.model = "X-1";
   EXPECT_TRUE(std::isnan(flight.Check().readout_ms));
   EXPECT_TRUE(std::isnan(flight.Check().smear_px));
   EXPECT_TRUE(flight.Codes().empty());
@@ -164,7 +157,7 @@ TEST(FlightChecks, WithoutGeoreferenceLengthsAreUnknown) {
   EXPECT_TRUE(std::isnan(checks.smear_px));
   EXPECT_TRUE(std::isnan(checks.dome_m));
   EXPECT_EQ(checks.k1, -0.05);
-  for (survey::PhotoTags& tags : flight.tags) tags.speed_mps = 9.0;
+  for (input::PreparedPhoto& photo : flight.photos) photo.file.tags.speed_mps = 9.0;
   EXPECT_EQ(flight.Check().speed_mps, 9.0);
   EXPECT_TRUE(std::isnan(flight.Check().smear_px));
 }
@@ -172,7 +165,7 @@ TEST(FlightChecks, WithoutGeoreferenceLengthsAreUnknown) {
 TEST(FlightChecks, ADomeOfTheReconstructionIsWarnedOf) {
   base::Random random(3);
   Flight flight = MakeFlight();
-  for (survey::PhotoTags& tags : flight.tags) tags.speed_mps = 0.0;
+  for (input::PreparedPhoto& photo : flight.photos) photo.file.tags.speed_mps = 0.0;
   // Tags as a reconstruction with a dome of 6 m sees them: the middle too low.
   RaiseTags(flight, [&](const Eigen::Vector3d& c) {
     const double r2 = (c.head<2>() - Eigen::Vector2d(60.0, 70.0)).squaredNorm();
@@ -270,7 +263,7 @@ TEST(FlightChecks, NothingBreaksThem) {
           photo.cam_from_enu.translation[random.Below(3)] = any();
           break;
         case 5:
-          flight.tags[i].speed_mps = any();
+          flight.photos[i].file.tags.speed_mps = any();
           break;
         case 6:
           photo.exposure.time_s = any();

@@ -26,7 +26,7 @@ double HeightOf(const RoofPlane& plane, const Eigen::Vector2d& enu) {
 // Cells where the surface continues the roof: near its planar points, and in bites of that, where boxes stand or errors bend it.
 CellMask CellsOfRoof(const TopRaster& top, const RoofLevels& levels, std::span<const PlanePiece> pieces, double max_green, double edge_m,
                      double reach_m) {
-  CellMask near = top.EmptyMask(), possible = top.EmptyMask();
+  CellMask near(top), possible(top);
   for (size_t cell = 0; cell < top.size(); ++cell) {
     if (levels.piece[cell] < 0) continue;
     const PlanePiece& piece = pieces[static_cast<size_t>(levels.piece[cell])];
@@ -76,7 +76,7 @@ void FillHoles(const TopRaster& top, const RoofLevels& levels, double tolerance_
 
 RoofLevels FindRoofLevels(const TopRaster& top, std::span<const PlanePiece> pieces, const PointCloud& cloud, double max_green) {
   RoofLevels levels;
-  CellMask seeds = top.EmptyMask();
+  CellMask seeds(top);
   std::vector<int32_t> piece_at(top.size(), -1);
   for (size_t p = 0; p < pieces.size(); ++p) {
     if (pieces[p].kind == PieceKind::kNone) continue;

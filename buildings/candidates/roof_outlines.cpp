@@ -119,11 +119,9 @@ RoofArea CutOut(const TopRaster& top, const RoofLevels& levels, const std::vecto
   low = std::max(low - around, 0);
   right = std::min(right + around, top.columns - 1);
   high = std::min(high + around, top.rows - 1);
-  RoofArea area;
-  area.origin = top.origin + top.cell_m * Eigen::Vector2d(left, low);
-  area.cell_m = top.cell_m;
-  area.mask = CellMask(right - left + 1, high - low + 1);
-  for (const uint32_t cell : cells) area.mask.value[area.mask.Index(static_cast<int>(cell % width) - left, static_cast<int>(cell / width) - low)] = 1;
+  RoofArea area{{top.origin + top.cell_m * Eigen::Vector2d(left, low), top.cell_m, right - left + 1, high - low + 1}, {}, {}, {}};
+  area.mask = CellMask(area);
+  for (const uint32_t cell : cells) area.mask.value[area.Index(static_cast<int>(cell % width) - left, static_cast<int>(cell / width) - low)] = 1;
   for (int row = low; row <= high; ++row) {
     for (int column = left; column <= right; ++column) {
       area.roof_z.push_back(levels.z[top.Index(column, row)]);

@@ -20,6 +20,7 @@ struct PlaneGrid : base::GridShape {
   PlaneGrid(const Eigen::Vector2d& corner, double side_m, const Eigen::Vector2d& size)
       : PlaneGrid(corner, side_m, static_cast<int>(size.x() / side_m) + 1, static_cast<int>(size.y() / side_m) + 1) {}
 
+  Eigen::Vector2d max() const { return origin + cell_m * Eigen::Vector2d(columns, rows); }
   Eigen::Vector2d Centre(int column, int row) const { return origin + cell_m * Eigen::Vector2d(column + 0.5, row + 0.5); }
   Eigen::Vector2d CentreOf(size_t cell) const {
     const auto width = static_cast<size_t>(columns);

@@ -146,9 +146,8 @@ class ErrorMapQuery : public Query {
       throw BadMessage("none of the " + std::to_string(photos_.size()) + " held-out photos can be read: " + problem_);
     }
     if (map_->Empty()) throw BadMessage("the held-out photos show no surface of this scene");
-    const geo::PlaneGrid& grid = map_->grid();
-    result_.min_enu = grid.origin;
-    result_.max_enu = grid.origin + grid.cell_m * Eigen::Vector2d(grid.columns, grid.rows);
+    result_.min_enu = map_->grid().origin;
+    result_.max_enu = map_->grid().max();
     result_.scale = std::max(kSmallestScale, map_->Quantile(kScaleShare));
     result_.url = publish_(map_->Picture(result_.scale));
   }

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "buildings/candidates/matched_points.h"
+#include "buildings/fit/fit_parameters.h"
 #include "buildings/fit/fit_shape.h"
-#include "buildings/fit/parameters.h"
 #include "buildings/outline_block.h"
 #include "buildings/shape/find_shape.h"
 #include "buildings/solids/build_solids.h"

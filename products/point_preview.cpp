@@ -14,9 +14,9 @@
 #include "core/base/text.h"
 #include "products/map_area.h"
 #include "products/map_rays.h"
+#include "products/photo_choice.h"
 #include "products/photo_mosaic.h"
 #include "products/sparse_surface.h"
-#include "products/view_choice.h"
 
 namespace skyquilt::products {
 namespace {

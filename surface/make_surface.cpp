@@ -18,7 +18,7 @@
 #include "surface/mesh/simplify.h"
 #include "surface/odm_names.h"
 #include "surface/surface_table.h"
-#include "surface/views/render_views.h"
+#include "surface/views/render_depth_views.h"
 
 namespace skyquilt::surface {
 namespace {

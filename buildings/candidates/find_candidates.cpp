@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "buildings/candidates/bridge.h"
 #include "buildings/candidates/gather_points.h"
+#include "buildings/candidates/looks_like_bridge.h"
 #include "buildings/candidates/piece_kind.h"
 #include "buildings/candidates/plan_index.h"
 #include "buildings/candidates/plane_sizes.h"

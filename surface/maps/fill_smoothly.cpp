@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "core/base/cancel.h"
+#include "surface/maps/cell_plane.h"
 #include "surface/maps/height_raster.h"
-#include "surface/maps/plane_fit.h"
 
 namespace skyquilt::surface {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "core/base/cancel.h"
 #include "core/base/order_statistics.h"
+#include "surface/maps/cell_plane.h"
 #include "surface/maps/height_raster.h"
-#include "surface/maps/plane_fit.h"
 #include "surface/maps/window_filter.h"
 
 namespace skyquilt::surface {

@@ -1,4 +1,4 @@
-#include "simulate/mesh.h"
+#include "simulate/tagged_mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "buildings/candidates/bridge.h"
+#include "buildings/candidates/looks_like_bridge.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "surface/maps/terrain.h"
+#include "surface/maps/find_terrain.h"
 
 #include <algorithm>
 #include <array>

@@ -66,13 +66,13 @@ class SurfaceCells {
 
   // One place per column; NaN outside the scene's box.
   void MakeRow(int row, std::vector<Eigen::Vector3d>* places_enu) const {
-    MapRays made;
-    rays_.MakeRow(row, &made);
+    MapRays row_rays;
+    rays_.MakeRow(row, &row_rays);
     places_enu->assign(static_cast<size_t>(width_), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-    for (size_t i = 0; i < made.rays.size(); ++i) {
-      const render::Ray& ray = made.rays[i];
+    for (size_t i = 0; i < row_rays.rays.size(); ++i) {
+      const render::Ray& ray = row_rays.rays[i];
       const double z = heights_.At(ray.origin_enu.x(), ray.origin_enu.y());
-      (*places_enu)[static_cast<size_t>(made.column[i])] = ray.origin_enu + (z - ray.origin_enu.z()) / ray.direction_enu.z() * ray.direction_enu;
+      (*places_enu)[static_cast<size_t>(row_rays.column[i])] = ray.origin_enu + (z - ray.origin_enu.z()) / ray.direction_enu.z() * ray.direction_enu;
     }
   }
 

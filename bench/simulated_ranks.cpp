@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/rank_messages.h"
 #include "coordinator/scheduler/coordinate.h"
 #include "core/base/errors.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "buildings/candidates/matched_points.h"
+#include "buildings/fit/fit_parameters.h"
 #include "buildings/fit/fit_shape.h"
-#include "buildings/fit/parameters.h"
 #include "buildings/outline_block.h"
 #include "buildings/shape/find_shape.h"
 #include "buildings/solids/build_solids.h"
@@ -90,9 +90,9 @@ Overhang UsualOverhang(const std::vector<std::optional<Fitted>>& fits, double as
   return {middle, std::max(0.1, 1.4826 * base::Median(std::move(seen))), true};
 }
 
-class Maker {
+class BuildingsMaker {
  public:
-  Maker(const BuildingsInput& input, base::ThreadPool& threads) : input_(input), threads_(threads) {
+  BuildingsMaker(const BuildingsInput& input, base::ThreadPool& threads) : input_(input), threads_(threads) {
     fit_options_.gsd_m = input.gsd_m;
     fit_options_.accuracy = input.accuracy;
   }
@@ -327,7 +327,7 @@ void ApplyScale(const BuildingsInput& input, BuildingSet* set) {
 BuildingSet MakeBuildings(const BuildingsInput& input, base::ThreadPool& threads) {
   SKYQUILT_CHECK(input.cloud != nullptr && input.ground != nullptr && input.gsd_m > 0.0, "cloud, ground and gsd must be set");
   input.options.Check();
-  BuildingSet set = Maker(input, threads).Make();
+  BuildingSet set = BuildingsMaker(input, threads).Make();
   ApplyScale(input, &set);
   return set;
 }

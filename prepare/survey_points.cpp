@@ -7,7 +7,7 @@
 #include "core/base/log.h"
 #include "core/base/mix_bits.h"
 #include "core/survey/training_points.h"
-#include "prepare/georeference/sparse_cloud.h"
+#include "prepare/georeference/filter_sparse_points.h"
 
 namespace skyquilt::prepare {
 namespace {

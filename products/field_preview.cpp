@@ -66,7 +66,7 @@ FieldPreview MakeFieldPreview(const scene::SceneInfo& info, const RayCaster& cas
   gis::MapGrid grid = PlanPreviewGrid(info, info.gsd_m, cells);
   const std::optional<gis::Boundary> boundary = BoundaryOf(grid, options);
   if (boundary) grid = CropTo(grid, *boundary);
-  PreviewMap map{grid, std::vector<uint8_t>(4 * static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), 0)};
+  PreviewMap map{grid, std::vector<uint8_t>(4 * grid.size(), 0)};
   const std::vector<uint8_t> inside = boundary ? boundary->Mask(grid) : std::vector<uint8_t>(map.rgba.size() / 4, 1);
   const MapRayGenerator maker(info, grid);
   base::Progress progress("preview", static_cast<double>(grid.width) * grid.height, "cells");
@@ -76,7 +76,7 @@ FieldPreview MakeFieldPreview(const scene::SceneInfo& info, const RayCaster& cas
     base::ThrowIfCancelled();
     maker.MakeRow(row, &row_rays);
     for (size_t i = 0; i < row_rays.rays.size(); ++i) {
-      const size_t cell = static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(row_rays.column[i]);
+      const size_t cell = grid.Index(row_rays.column[i], row);
       if (inside[cell] == 0) continue;
       waiting.rays.push_back(row_rays.rays[i]);
       waiting.cells.push_back(cell);

@@ -125,7 +125,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
         if (boundary && !boundary->Contains(grid.CellCentre(row_rays.column[i], band.first_row + row))) continue;
         ++products.rays;
         pending.rays.push_back(row_rays.rays[i]);
-        pending.cell.push_back(static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(row_rays.column[i]));
+        pending.cell.push_back(grid.Index(row_rays.column[i], row));
         pending.start_height_m.push_back(row_rays.start_height_m[i]);
         if (pending.rays.size() == kBatchRays) filled += RenderPending(caster, options.min_opacity, &pending, &band);
       }

@@ -12,7 +12,7 @@
 #include "core/image/image.h"
 #include "core/survey/survey.h"
 #include "products/overlap_gains.h"
-#include "products/view_choice.h"
+#include "products/photo_choice.h"
 
 namespace skyquilt::products {
 

@@ -14,9 +14,9 @@
 #include "core/base/text.h"
 #include "products/map_area.h"
 #include "products/map_rays.h"
+#include "products/photo_choice.h"
 #include "products/photo_mosaic.h"
 #include "products/sparse_surface.h"
-#include "products/view_choice.h"
 
 namespace skyquilt::products {
 namespace {
@@ -66,13 +66,13 @@ class SurfaceCells {
 
   // One place per column; NaN outside the scene's box.
   void MakeRow(int row, std::vector<Eigen::Vector3d>* places_enu) const {
-    MapRays made;
-    rays_.MakeRow(row, &made);
+    MapRays row_rays;
+    rays_.MakeRow(row, &row_rays);
     places_enu->assign(static_cast<size_t>(width_), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-    for (size_t i = 0; i < made.rays.size(); ++i) {
-      const render::Ray& ray = made.rays[i];
+    for (size_t i = 0; i < row_rays.rays.size(); ++i) {
+      const render::Ray& ray = row_rays.rays[i];
       const double z = heights_.At(ray.origin_enu.x(), ray.origin_enu.y());
-      (*places_enu)[static_cast<size_t>(made.column[i])] = ray.origin_enu + (z - ray.origin_enu.z()) / ray.direction_enu.z() * ray.direction_enu;
+      (*places_enu)[static_cast<size_t>(row_rays.column[i])] = ray.origin_enu + (z - ray.origin_enu.z()) / ray.direction_enu.z() * ray.direction_enu;
     }
   }
 
@@ -142,7 +142,7 @@ std::vector<int32_t> PhotosAround(const Nodes& nodes, int row, int column) {
 // inside: 0 for cells that are left out; empty: none is.
 PreviewMap Paint(const gis::MapGrid& grid, const SurfaceCells& cells, const Nodes& nodes, const MosaicPainter& painter,
                  const std::vector<uint8_t>& inside, base::ThreadPool& threads) {
-  PreviewMap map{grid, std::vector<uint8_t>(4 * static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), 0)};
+  PreviewMap map{grid, std::vector<uint8_t>(4 * grid.size(), 0)};
   threads.ParallelFor(nodes.rows - 1, [&](int64_t task, int /*thread*/) {
     base::ThrowIfCancelled();
     const int band = static_cast<int>(task);
@@ -151,10 +151,9 @@ PreviewMap Paint(const gis::MapGrid& grid, const SurfaceCells& cells, const Node
     std::vector<Eigen::Vector3d> places;
     for (int row = band * kNodeStep; row < std::min((band + 1) * kNodeStep, grid.height); ++row) {
       cells.MakeRow(row, &places);
-      const size_t first = static_cast<size_t>(row) * static_cast<size_t>(grid.width);
       for (int column = 0; column < grid.width; ++column) {
         const Eigen::Vector3d& place = places[static_cast<size_t>(column)];
-        const size_t cell = first + static_cast<size_t>(column);
+        const size_t cell = grid.Index(column, row);
         if (!place.allFinite() || (!inside.empty() && inside[cell] == 0)) continue;
         const std::array<uint8_t, 4> color = painter.ColorAt(place, around[static_cast<size_t>(column / kNodeStep)]);
         std::copy(color.begin(), color.end(), map.rgba.begin() + static_cast<std::ptrdiff_t>(4 * cell));

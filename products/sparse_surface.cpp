@@ -78,15 +78,13 @@ scene::HeightMap HeightsOfPoints(const std::vector<Eigen::Vector3d>& points, con
   SKYQUILT_CHECK(!points.empty() && !area.isEmpty(), "heights need points and an area");
   const Eigen::Vector2d size = area.sizes().cwiseMax(1e-6);
   const double cell_m = std::max(std::sqrt(kCellPoints * size.prod() / static_cast<double>(points.size())), size.maxCoeff() / kMostHeightCells);
-  const int columns = static_cast<int>(size.x() / cell_m) + 1, rows = static_cast<int>(size.y() / cell_m) + 1;
-  const auto index = [columns](int row, int column) { return static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column); };
-  std::vector<std::vector<double>> in_cell(index(rows, 0));
+  const geo::PlaneGrid grid(area.min(), cell_m, size);
+  std::vector<std::vector<double>> in_cell(grid.size());
   std::vector<double> everywhere;
   for (const Eigen::Vector3d& point : points) {
     everywhere.push_back(point.z());
-    const Eigen::Vector2d at = (point.head<2>() - area.min()) / cell_m;
-    if (!(at.minCoeff() >= 0.0 && at.x() < columns && at.y() < rows)) continue;
-    in_cell[index(static_cast<int>(at.y()), static_cast<int>(at.x()))].push_back(point.z());
+    const int64_t cell = grid.CellAt(point.head<2>());
+    if (cell >= 0) in_cell[static_cast<size_t>(cell)].push_back(point.z());
   }
   // When all points lie beside the area, it is level.
   std::vector<double> medians(in_cell.size(), base::UpperMedian(everywhere)), known(in_cell.size(), 0.0);
@@ -96,20 +94,20 @@ scene::HeightMap HeightsOfPoints(const std::vector<Eigen::Vector3d>& points, con
     known[i] = 1.0;
   }
   std::vector<double> heights = medians, around;
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      if (known[index(row, column)] == 0.0) continue;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      if (known[grid.Index(column, row)] == 0.0) continue;
       around.clear();
-      for (int r = std::max(0, row - 1); r <= std::min(rows - 1, row + 1); ++r) {
-        for (int c = std::max(0, column - 1); c <= std::min(columns - 1, column + 1); ++c) {
-          if (known[index(r, c)] != 0.0) around.push_back(medians[index(r, c)]);
+      for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r) {
+        for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) {
+          if (known[grid.Index(c, r)] != 0.0) around.push_back(medians[grid.Index(c, r)]);
         }
       }
-      if (around.size() >= kFewestNeighbours) heights[index(row, column)] = base::UpperMedian(around);
+      if (around.size() >= kFewestNeighbours) heights[grid.Index(column, row)] = base::UpperMedian(around);
     }
   }
-  scene::FillFromSurroundings(columns, rows, 1, &heights, std::move(known));
-  return {area.min().x(), area.min().y(), cell_m, columns, rows, std::move(heights)};
+  scene::FillFromSurroundings(grid, 1, &heights, std::move(known));
+  return {grid, std::move(heights)};
 }
 
 }  // namespace skyquilt::products

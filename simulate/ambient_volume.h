@@ -9,8 +9,8 @@
 
 #include "core/base/thread_pool.h"
 #include "core/raytrace/traced_scene.h"
-#include "simulate/mesh.h"
 #include "simulate/sky.h"
+#include "simulate/tagged_mesh.h"
 
 namespace skyquilt::simulate {
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "simulate/mesh.h"
 #include "simulate/plane_turn.h"
+#include "simulate/tagged_mesh.h"
 
 namespace skyquilt::simulate {
 

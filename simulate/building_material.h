@@ -1,7 +1,7 @@
 // Appearance of buildings: plaster with windows, tiled and gravel roofs.
 #pragma once
 
-#include "simulate/building.h"
+#include "simulate/simulated_building.h"
 #include "simulate/surface.h"
 
 namespace skyquilt::simulate {

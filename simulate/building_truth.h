@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/geo/enu_frame.h"
-#include "simulate/building.h"
 #include "simulate/place_spec.h"
+#include "simulate/simulated_building.h"
 
 namespace skyquilt::simulate {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "simulate/mesh.h"
+#include "simulate/tagged_mesh.h"
 
 namespace skyquilt::simulate {
 

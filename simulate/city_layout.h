@@ -12,10 +12,10 @@
 
 #include "core/base/random.h"
 #include "simulate/bridge.h"
-#include "simulate/building.h"
 #include "simulate/car.h"
 #include "simulate/place_spec.h"
 #include "simulate/plane_turn.h"
+#include "simulate/simulated_building.h"
 #include "simulate/tree.h"
 
 namespace skyquilt::simulate {

@@ -5,7 +5,7 @@
 
 #include "core/survey/surface_class.h"
 #include "simulate/city_layout.h"
-#include "simulate/mesh.h"
+#include "simulate/tagged_mesh.h"
 
 namespace skyquilt::simulate {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "simulate/building.h"
 #include "simulate/plane_turn.h"
+#include "simulate/simulated_building.h"
 
 namespace skyquilt::simulate {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "simulate/building.h"
 #include "simulate/rectangle_union.h"
+#include "simulate/simulated_building.h"
 
 namespace skyquilt::simulate {
 

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "simulate/building.h"
 #include "simulate/city_layout.h"
+#include "simulate/simulated_building.h"
 
 namespace skyquilt::simulate {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "simulate/mesh.h"
 #include "simulate/surface.h"
+#include "simulate/tagged_mesh.h"
 
 namespace skyquilt::simulate {
 

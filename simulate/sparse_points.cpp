@@ -69,7 +69,7 @@ std::vector<SurfaceSeed> ChooseSeeds(const camera::Camera& camera, int photo, in
 std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const camera::Camera& camera, const std::vector<PhotoPlan>& photos,
                                                   const std::vector<SurfaceSeed>& seeds, uint32_t seed, base::ThreadPool& threads) {
   const PointViews views(world, camera, photos);
-  std::vector<std::optional<survey::ColmapPoint>> made(seeds.size());
+  std::vector<std::optional<survey::ColmapPoint>> of_seed(seeds.size());
   base::Progress progress("sparse points", static_cast<double>(seeds.size()), "points");
   threads.ParallelFor(static_cast<int64_t>(seeds.size()), [&](int64_t task, int /*thread*/) {
     base::ThrowIfCancelled();
@@ -90,11 +90,11 @@ std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const came
     const Vector3d error(error_x, error_y, error_z);
     point.x_in_world = found->position.cast<double>() + error;
     point.rgb = chosen.rgb;
-    made[static_cast<size_t>(task)] = std::move(point);
+    of_seed[static_cast<size_t>(task)] = std::move(point);
   });
   progress.Finish();
   std::vector<survey::ColmapPoint> points;
-  for (std::optional<survey::ColmapPoint>& point : made) {
+  for (std::optional<survey::ColmapPoint>& point : of_seed) {
     if (!point) continue;
     point->id = points.size() + 1;
     points.push_back(std::move(*point));

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulate/mesh.h"
+#include "simulate/tagged_mesh.h"
 
 namespace skyquilt::simulate {
 

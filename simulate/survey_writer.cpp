@@ -42,11 +42,11 @@ image::Image8 Develop(const image::ImageF& rgb_linear, const Development& develo
   // Table from linear light to 8-bit sRGB, fine enough where sRGB is steepest.
   constexpr size_t kTableSize = 1U << 15U;
   static const std::array<uint8_t, kTableSize + 1> table = [] {
-    std::array<uint8_t, kTableSize + 1> made{};
+    std::array<uint8_t, kTableSize + 1> srgb{};
     for (size_t i = 0; i <= kTableSize; ++i) {
-      made[i] = static_cast<uint8_t>(std::lround(255.0F * image::SrgbFromLinear(static_cast<float>(i) / static_cast<float>(kTableSize))));
+      srgb[i] = static_cast<uint8_t>(std::lround(255.0F * image::SrgbFromLinear(static_cast<float>(i) / static_cast<float>(kTableSize))));
     }
-    return made;
+    return srgb;
   }();
   image::Image8 out(rgb_linear.width, rgb_linear.height, 3);
   std::array<float, 3> scale{};

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "simulate/mesh.h"
+#include "simulate/tagged_mesh.h"
 
 namespace skyquilt::simulate {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "simulate/mesh.h"
+#include "simulate/tagged_mesh.h"
 
 namespace skyquilt::simulate {
 

@@ -18,7 +18,7 @@
 #include "surface/mesh/simplify.h"
 #include "surface/odm_names.h"
 #include "surface/surface_table.h"
-#include "surface/views/render_views.h"
+#include "surface/views/render_depth_views.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -90,7 +90,7 @@ void ClassifyPoints(const HeightRaster& terrain, const MapFrame& frame, double l
     const Eigen::Vector3d in_map = frame.MapFromEnu(point.position);
     const Eigen::Vector2d cell = grid.CellOf(in_map.head<2>()).array().round();
     if (!(cell.x() >= 0.0 && cell.y() >= 0.0 && cell.x() < grid.width && cell.y() < grid.height)) continue;
-    const float ground = terrain.height_m[static_cast<size_t>(cell.y()) * static_cast<size_t>(grid.width) + static_cast<size_t>(cell.x())];
+    const float ground = terrain.height_m[grid.Index(static_cast<int>(cell.x()), static_cast<int>(cell.y()))];
     if (std::abs(in_map.z() - static_cast<double>(ground)) <= low_m) point.las_class = kGround;
   }
 }

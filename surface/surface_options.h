@@ -24,7 +24,7 @@ struct SurfaceOptions {
   int jpeg_quality = 88;            // of the texture
   bool glb = true, obj = true, ply = true, cloud = true, tiles = true;  // files
   bool maps = true;                                                     // terrain model, height above ground, hillshade, contours
-  double terrain_cell_m = 0.5;      // cells in which ground is told from what stands on it; see maps/terrain.h for the others
+  double terrain_cell_m = 0.5;      // cells in which ground is told from what stands on it; see maps/find_terrain.h for the others
   double terrain_window_m = 60.0;   // size of the largest building
   double terrain_slope = 0.3;       // steepest ground, metres of height per metre
   double terrain_low_m = 0.3;       // what rises less than this above the ground belongs to it

@@ -65,15 +65,14 @@ scene::Background MakeBackground(const RaySource& source, const survey::Survey& 
   const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
   const double cell_m = std::max(base::UpperMedian(spacing), size.maxCoeff() / kMostBackgroundCells);
   if (!(cell_m > 0.0)) return background;
-  const int columns = static_cast<int>(size.x() / cell_m) + 1, rows = static_cast<int>(size.y() / cell_m) + 1;
-  const size_t cells = static_cast<size_t>(columns) * static_cast<size_t>(rows);
-  std::vector<double> sum(3 * cells, 0.0), count(cells, 0.0);
+  const geo::PlaneGrid grid(low, cell_m, size);
+  std::vector<double> sum(3 * grid.size(), 0.0), count(grid.size(), 0.0);
   const auto add = [&](const Splat& splat) {
-    const int column = std::min(columns - 1, static_cast<int>((splat.x.x() - low.x()) / cell_m));
-    const int row = std::min(rows - 1, static_cast<int>((splat.x.y() - low.y()) / cell_m));
-    for (int v = std::max(0, row - kReach); v <= std::min(rows - 1, row + kReach); ++v) {
-      for (int u = std::max(0, column - kReach); u <= std::min(columns - 1, column + kReach); ++u) {
-        const size_t cell = static_cast<size_t>(v) * static_cast<size_t>(columns) + static_cast<size_t>(u);
+    const int column = std::min(grid.columns - 1, static_cast<int>((splat.x.x() - low.x()) / cell_m));
+    const int row = std::min(grid.rows - 1, static_cast<int>((splat.x.y() - low.y()) / cell_m));
+    for (int v = std::max(0, row - kReach); v <= std::min(grid.rows - 1, row + kReach); ++v) {
+      for (int u = std::max(0, column - kReach); u <= std::min(grid.columns - 1, column + kReach); ++u) {
+        const size_t cell = grid.Index(u, v);
         for (size_t c = 0; c < 3; ++c) sum[3 * cell + c] += static_cast<double>(splat.srgb[static_cast<Eigen::Index>(c)]);
         count[cell] += 1.0;
       }
@@ -82,12 +81,10 @@ scene::Background MakeBackground(const RaySource& source, const survey::Survey& 
   for (const std::vector<Splat>& splats : of_photos) std::ranges::for_each(splats, add);
   for (size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(1.0, count[i / 3]);
   std::vector<double> heights;
-  heights.reserve(cells);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) heights.push_back(points.At(low.x() + (column + 0.5) * cell_m, low.y() + (row + 0.5) * cell_m));
-  }
-  scene::FillFromSurroundings(columns, rows, 3, &sum, std::move(count));
-  background.surface = scene::HeightMap(low.x(), low.y(), cell_m, columns, rows, std::move(heights));
+  heights.reserve(grid.size());
+  for (size_t cell = 0; cell < grid.size(); ++cell) heights.push_back(points.At(grid.CentreOf(cell).x(), grid.CentreOf(cell).y()));
+  scene::FillFromSurroundings(grid, 3, &sum, std::move(count));
+  background.surface = scene::HeightMap(grid, std::move(heights));
   background.rgb_srgb.assign(sum.begin(), sum.end());
   return background;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -117,21 +118,19 @@ buildings::GroundGrid SparseGround(const PointCloud& cloud, const surface::Terra
   grid.height = 1 + static_cast<int>(static_cast<double>(high.y() - low.y()) / terrain.cell_m);
   grid.left = cloud.middle.x() + static_cast<double>(low.x());
   grid.top = cloud.middle.y() + static_cast<double>(low.y()) + grid.height * terrain.cell_m;
-  const auto width = static_cast<size_t>(grid.width), height = static_cast<size_t>(grid.height);
-  lowest.height_m.assign(width * height, std::numeric_limits<float>::quiet_NaN());
+  lowest.height_m.assign(grid.size(), std::numeric_limits<float>::quiet_NaN());
   for (size_t i = 0; i < cloud.points.size(); ++i) {
     const Eigen::Vector3d x = cloud.At(i);
     const Eigen::Vector2d cell = grid.CellOf(x.head<2>());
-    const auto column = static_cast<size_t>(std::clamp(std::lround(cell.x()), 0L, grid.width - 1L));
-    const auto row = static_cast<size_t>(std::clamp(std::lround(cell.y()), 0L, grid.height - 1L));
-    float& kept = lowest.height_m[row * width + column];
+    const auto column = static_cast<int>(std::clamp(std::lround(cell.x()), 0L, grid.width - 1L));
+    const auto row = static_cast<int>(std::clamp(std::lround(cell.y()), 0L, grid.height - 1L));
+    float& kept = lowest.height_m[grid.Index(column, row)];
     kept = std::fmin(kept, static_cast<float>(x.z()));  // ignores NaN
   }
   const surface::Terrain found = surface::FindTerrain(lowest, terrain);
-  std::vector<float> ground(width * height);
-  for (size_t row = 0; row < height; ++row) {  // maps begin in the north, GroundGrid in the south
-    std::copy_n(found.height.height_m.begin() + static_cast<std::ptrdiff_t>((height - 1 - row) * width), width,
-                ground.begin() + static_cast<std::ptrdiff_t>(row * width));
+  std::vector<float> ground;
+  for (int row = grid.height - 1; row >= 0; --row) {  // maps begin in the north, GroundGrid in the south
+    std::copy_n(found.height.height_m.begin() + static_cast<std::ptrdiff_t>(grid.Index(0, row)), grid.width, std::back_inserter(ground));
   }
   return {grid.CellCentre(0, grid.height - 1), terrain.cell_m, grid.width, grid.height, std::move(ground)};
 }

@@ -4,7 +4,7 @@
 #include "buildings/points/surface_points.h"
 #include "core/base/thread_pool.h"
 #include "core/survey/survey.h"
-#include "surface/maps/terrain.h"
+#include "surface/maps/find_terrain.h"
 
 namespace skyquilt::bench {
 
@@ -16,7 +16,7 @@ buildings::PointCloud SparseCloud(const survey::Survey& survey, base::ThreadPool
 // than half the distance of points, or most cells of a roof are far from any point of its plane. gsd_m: of the photos, the least.
 double SparseGsd(const buildings::PointCloud& cloud, double gsd_m);
 
-// Ground below the points: the lowest point of each cell, filtered as the terrain of a surface (surface/maps/terrain.h). Cells are as large as
+// Ground below the points: the lowest point of each cell, filtered as the terrain of a surface (surface/maps/find_terrain.h). Cells are as large as
 // options.cell_m says, and at least twice as large as the distance of points, so that most of them have one.
 buildings::GroundGrid SparseGround(const buildings::PointCloud& cloud, const surface::TerrainOptions& options);
 

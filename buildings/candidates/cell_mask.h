@@ -8,18 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "core/base/grid.h"
+
 namespace skyquilt::buildings {
 
-// value: [row][column], non-zero inside.
-struct CellMask {
-  int columns = 0, rows = 0;
-  std::vector<uint8_t> value;
-
-  CellMask() = default;
-  CellMask(int n_columns, int n_rows) : columns(n_columns), rows(n_rows), value(static_cast<size_t>(n_columns) * static_cast<size_t>(n_rows), 0) {}
-  bool Inside(int column, int row) const { return column >= 0 && row >= 0 && column < columns && row < rows; }
-  size_t Index(int column, int row) const { return static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column); }
-};
+using CellMask = base::Grid<uint8_t>;  // non-zero: in the set
 
 // For each cell the nearest cell of the mask, by the distance of centres; -1 when the mask is empty. Exact but for rare ties of sequential Euclidean
 // mapping (Danielsson 1980), there wrong by a fraction of a cell.

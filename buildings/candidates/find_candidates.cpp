@@ -6,10 +6,10 @@
 #include <numeric>
 #include <utility>
 
-#include "buildings/candidates/bridge.h"
 #include "buildings/candidates/gather_points.h"
+#include "buildings/candidates/looks_like_bridge.h"
 #include "buildings/candidates/piece_kind.h"
-#include "buildings/candidates/plan_grid.h"
+#include "buildings/candidates/plan_index.h"
 #include "buildings/candidates/plane_sizes.h"
 #include "buildings/candidates/roof_outlines.h"
 #include "buildings/candidates/standing.h"
@@ -206,7 +206,7 @@ Gathered GatherGiven(const GivenOutline& given, const Surface& surface, base::Th
 std::vector<Candidate> FindCandidates(const PointCloud& cloud, const GroundGrid& ground, const BuildingsOptions& options, double gsd_m,
                                       base::ThreadPool& threads) {
   SKYQUILT_CHECK(gsd_m > 0.0 && cloud.spacing_m > 0.0, "GSD and spacing must be known");
-  const PlanGrid plan(cloud, kPlanCell_m);
+  const PlanIndex plan(cloud, kPlanCell_m);
   const Surface surface{cloud, ground, plan, options, gsd_m};
   const SurveyFacts facts{SurveyEdge(cloud), ColoursTell(cloud, options.max_green)};
   const std::vector<std::vector<PlanePiece>> groups = GroupPieces(FindPieces(surface, HighPoints(surface, threads), threads), cloud);
@@ -226,7 +226,7 @@ std::vector<Candidate> FindCandidates(const PointCloud& cloud, const GroundGrid&
 std::vector<Candidate> CandidatesIn(std::span<const GivenOutline> outlines, const PointCloud& cloud, const GroundGrid& ground,
                                     const BuildingsOptions& options, double gsd_m, base::ThreadPool& threads) {
   SKYQUILT_CHECK(gsd_m > 0.0 && cloud.spacing_m > 0.0, "GSD and spacing must be known");
-  const PlanGrid plan(cloud, kPlanCell_m);
+  const PlanIndex plan(cloud, kPlanCell_m);
   const Surface surface{cloud, ground, plan, options, gsd_m};
   const SurveyEdge edge(cloud);
   std::vector<Gathered> all;

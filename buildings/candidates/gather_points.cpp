@@ -90,13 +90,12 @@ Gathered GatherPoints(const RoofArea& area, std::span<const PlanePiece> pieces, 
   const double tolerance_m = RoofTolerance(surface.gsd_m);
   const std::vector<int32_t> nearest = NearestCells(area.mask);
   const std::vector<float> wall_tops = WallTops(area, pieces, surface.options.min_part_m2);
-  const Eigen::Vector2d size = area.cell_m * Eigen::Vector2d(area.mask.columns, area.mask.rows);
-  surface.plan.ForEachIn({area.origin, area.origin + size}, [&](uint32_t i) {
+  surface.plan.ForEachIn({area.origin, area.max()}, [&](uint32_t i) {
     const SurfacePoint& point = cloud.points[i];
     const Eigen::Vector3d at = cloud.At(i);
     const Eigen::Vector2d in_cells = (at.head<2>() - area.origin) / area.cell_m;
-    const size_t cell = area.mask.Index(std::min(static_cast<int>(in_cells.x()), area.mask.columns - 1),
-                                        std::min(static_cast<int>(in_cells.y()), area.mask.rows - 1));
+    const size_t cell =
+        area.Index(std::min(static_cast<int>(in_cells.x()), area.columns - 1), std::min(static_cast<int>(in_cells.y()), area.rows - 1));
     if (nearest[cell] < 0 || point.filled != 0) return;
     const double distance_m = area.cell_m * CellDistance(area.mask, cell, nearest[cell]);
     if (std::abs(point.normal.z()) < kSteep) {

@@ -8,7 +8,7 @@
 #include "buildings/buildings_options.h"
 #include "buildings/candidates/find_candidates.h"
 #include "buildings/candidates/piece_kind.h"
-#include "buildings/candidates/plan_grid.h"
+#include "buildings/candidates/plan_index.h"
 #include "buildings/candidates/roof_outlines.h"
 
 namespace skyquilt::buildings {
@@ -17,7 +17,7 @@ namespace skyquilt::buildings {
 struct Surface {
   const PointCloud& cloud;
   const GroundGrid& ground;
-  const PlanGrid& plan;
+  const PlanIndex& plan;
   const BuildingsOptions& options;
   double gsd_m;
 };

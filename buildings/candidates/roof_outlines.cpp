@@ -26,7 +26,7 @@ double HeightOf(const RoofPlane& plane, const Eigen::Vector2d& enu) {
 // Cells where the surface continues the roof: near its planar points, and in bites of that, where boxes stand or errors bend it.
 CellMask CellsOfRoof(const TopRaster& top, const RoofLevels& levels, std::span<const PlanePiece> pieces, double max_green, double edge_m,
                      double reach_m) {
-  CellMask near = top.EmptyMask(), possible = top.EmptyMask();
+  CellMask near(top), possible(top);
   for (size_t cell = 0; cell < top.size(); ++cell) {
     if (levels.piece[cell] < 0) continue;
     const PlanePiece& piece = pieces[static_cast<size_t>(levels.piece[cell])];
@@ -76,7 +76,7 @@ void FillHoles(const TopRaster& top, const RoofLevels& levels, double tolerance_
 
 RoofLevels FindRoofLevels(const TopRaster& top, std::span<const PlanePiece> pieces, const PointCloud& cloud, double max_green) {
   RoofLevels levels;
-  CellMask seeds = top.EmptyMask();
+  CellMask seeds(top);
   std::vector<int32_t> piece_at(top.size(), -1);
   for (size_t p = 0; p < pieces.size(); ++p) {
     if (pieces[p].kind == PieceKind::kNone) continue;
@@ -119,11 +119,9 @@ RoofArea CutOut(const TopRaster& top, const RoofLevels& levels, const std::vecto
   low = std::max(low - around, 0);
   right = std::min(right + around, top.columns - 1);
   high = std::min(high + around, top.rows - 1);
-  RoofArea area;
-  area.origin = top.origin + top.cell_m * Eigen::Vector2d(left, low);
-  area.cell_m = top.cell_m;
-  area.mask = CellMask(right - left + 1, high - low + 1);
-  for (const uint32_t cell : cells) area.mask.value[area.mask.Index(static_cast<int>(cell % width) - left, static_cast<int>(cell / width) - low)] = 1;
+  RoofArea area{{top.origin + top.cell_m * Eigen::Vector2d(left, low), top.cell_m, right - left + 1, high - low + 1}, {}, {}, {}};
+  area.mask = CellMask(area);
+  for (const uint32_t cell : cells) area.mask.value[area.Index(static_cast<int>(cell % width) - left, static_cast<int>(cell / width) - low)] = 1;
   for (int row = low; row <= high; ++row) {
     for (int column = left; column <= right; ++column) {
       area.roof_z.push_back(levels.z[top.Index(column, row)]);

@@ -20,9 +20,7 @@ struct RoofLevels {
 RoofLevels FindRoofLevels(const TopRaster& top, std::span<const PlanePiece> pieces, const PointCloud& cloud, double max_green);
 
 // A building seen from above, on its own part of the raster with kAround_m on all sides where the raster reaches so far.
-struct RoofArea {
-  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
-  double cell_m = 0.0;
+struct RoofArea : geo::PlaneGrid {
   CellMask mask;
   std::vector<float> roof_z;   // RoofLevels::z
   std::vector<int32_t> piece;  // RoofLevels::piece

@@ -29,7 +29,7 @@ Standing MeasureStanding(const RoofArea& area, const TopRaster& top, const RoofL
   for (int row = 0; row < mask.rows; ++row) {
     for (int column = 0; column < mask.columns; ++column) {
       const size_t cell = mask.Index(column, row);
-      const Eigen::Vector2d at = area.origin + area.cell_m * Eigen::Vector2d(column + 0.5, row + 0.5);
+      const Eigen::Vector2d at = area.Centre(column, row);
       if (mask.value[cell] == 0) {
         const double distance_m = area.cell_m * CellDistance(mask, cell, nearest[cell]);
         if (distance_m < kBandFrom_m || distance_m > kBandTo_m || std::isnan(top_at(column, row))) continue;

@@ -21,31 +21,28 @@ SurveyEdge::SurveyEdge(const PointCloud& cloud) {
     low = low.cwiseMin(cloud.At(i).head<2>());
     high = high.cwiseMax(cloud.At(i).head<2>());
   }
-  cell_m_ = std::max({kLeastEdgeCell_m, kEdgeCellSpacings * cloud.spacing_m, std::sqrt((high - low).prod() / kMostEdgeCells)});
-  const double gap_cells = kOpening_m / cell_m_;
+  const double cell_m = std::max({kLeastEdgeCell_m, kEdgeCellSpacings * cloud.spacing_m, std::sqrt((high - low).prod() / kMostEdgeCells)});
+  const double gap_cells = kOpening_m / cell_m;
   const int margin = 2 + static_cast<int>(std::ceil(gap_cells));
-  origin_ = low - Eigen::Vector2d::Constant(margin * cell_m_);
-  const auto cells = [&](double length) { return 1 + 2 * margin + static_cast<int>(length / cell_m_); };
-  CellMask seen(cells(high.x() - low.x()), cells(high.y() - low.y()));
-  for (size_t i = 0; i < cloud.points.size(); ++i) {
-    const Eigen::Vector2d at = ((cloud.At(i).head<2>() - origin_) / cell_m_).array().floor();
-    seen.value[seen.Index(static_cast<int>(at.x()), static_cast<int>(at.y()))] = 1;
-  }
+  const auto cells = [&](double length) { return 1 + 2 * margin + static_cast<int>(length / cell_m); };
+  grid_ = {low - Eigen::Vector2d::Constant(margin * cell_m), cell_m, cells(high.x() - low.x()), cells(high.y() - low.y())};
+  CellMask seen(grid_);
+  for (size_t i = 0; i < cloud.points.size(); ++i) seen.value[static_cast<size_t>(grid_.CellAt(cloud.At(i).head<2>()))] = 1;
   // The surface with its narrow gaps closed.
   const CellMask closed = Eroded(Dilated(seen, 0.5 * gap_cells), 0.5 * gap_cells);
-  CellMask empty(seen.columns, seen.rows);
+  CellMask empty(grid_);
   for (size_t i = 0; i < empty.value.size(); ++i) empty.value[i] = closed.value[i] == 0 && seen.value[i] == 0 ? 1 : 0;
-  outside_ = CellMask(seen.columns, seen.rows);
+  outside_ = CellMask(grid_);
   const std::vector<std::vector<uint32_t>> parts = ConnectedParts(empty);
   for (const uint32_t cell : parts.front()) outside_.value[cell] = 1;  // the margin has the first cell
   nearest_ = NearestCells(outside_);
 }
 
 double SurveyEdge::DistanceTo(const Eigen::Vector2d& enu) const {
-  const Eigen::Vector2d at = ((enu - origin_) / cell_m_).array().floor();
-  if (!(at.x() >= 0.0 && at.y() >= 0.0 && at.x() < outside_.columns && at.y() < outside_.rows)) return 0.0;
-  const size_t cell = outside_.Index(static_cast<int>(at.x()), static_cast<int>(at.y()));
-  return std::max(0.0, cell_m_ * (CellDistance(outside_, cell, nearest_[cell]) - 0.5));
+  const int64_t at = grid_.CellAt(enu);
+  if (at < 0) return 0.0;
+  const auto cell = static_cast<size_t>(at);
+  return std::max(0.0, grid_.cell_m * (CellDistance(outside_, cell, nearest_[cell]) - 0.5));
 }
 
 double SurveyEdge::ShareOf(const Polygon& outline, double reach_m) const {

@@ -8,6 +8,7 @@
 #include "buildings/candidates/cell_mask.h"
 #include "buildings/geometry/polygon.h"
 #include "buildings/points/surface_points.h"
+#include "core/geo/plane_grid.h"
 
 namespace skyquilt::buildings {
 
@@ -23,8 +24,7 @@ class SurveyEdge {
   double ShareOf(const Polygon& outline, double reach_m) const;
 
  private:
-  Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
-  double cell_m_ = 1.0;
+  geo::PlaneGrid grid_;
   CellMask outside_;
   std::vector<int32_t> nearest_;
 };

@@ -48,15 +48,15 @@ double ExcessGreen(const SurfacePoint& point) {
   return sum > 0.0 ? (2.0 * point.rgb[1] - point.rgb[0] - point.rgb[2]) / sum : 0.0;
 }
 
-TopRaster RasteriseTop(const PointCloud& cloud, const PlanGrid& points, const Eigen::AlignedBox2d& box, double cell_m) {
+TopRaster RasteriseTop(const PointCloud& cloud, const PlanIndex& points, const Eigen::AlignedBox2d& box, double cell_m) {
   TopRaster raster;
   raster.cell_m = std::max(cell_m, std::sqrt(box.sizes().prod() / kMostRasterCells));
   // At whole multiples of the cell, so that the outline of a building does not depend on what else is near.
   raster.origin = (box.min() / raster.cell_m).array().floor() * raster.cell_m;
   raster.columns = 1 + static_cast<int>((box.max().x() - raster.origin.x()) / raster.cell_m);
   raster.rows = 1 + static_cast<int>((box.max().y() - raster.origin.y()) / raster.cell_m);
-  raster.top_z.assign(static_cast<size_t>(raster.columns) * static_cast<size_t>(raster.rows), kNoValue);
-  raster.green.assign(raster.top_z.size(), kNoValue);
+  raster.top_z.assign(raster.size(), kNoValue);
+  raster.green.assign(raster.size(), kNoValue);
   const auto for_each = [&](const auto& use) {
     points.ForEachIn(box, [&](uint32_t i) {
       if (cloud.points[i].filled != 0) return;

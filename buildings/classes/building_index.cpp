@@ -15,12 +15,12 @@ constexpr double kMostCells = 1e6;
 }  // namespace
 
 BuildingIndex::BuildingIndex(std::span<const Building> buildings, double reach_m, base::ThreadPool& threads) {
-  std::vector<std::optional<BuildingShell>> made(buildings.size());
+  std::vector<std::optional<BuildingShell>> shells(buildings.size());
   threads.ParallelFor(static_cast<int64_t>(buildings.size()), [&](int64_t task, int) {
     base::ThrowIfCancelled();
-    made[static_cast<size_t>(task)].emplace(buildings[static_cast<size_t>(task)], reach_m);
+    shells[static_cast<size_t>(task)].emplace(buildings[static_cast<size_t>(task)], reach_m);
   });
-  for (auto& shell : made) {
+  for (auto& shell : shells) {
     if (!shell->plan_box().isEmpty()) shells_.push_back(std::move(*shell));
   }
   if (shells_.empty()) return;

@@ -51,9 +51,9 @@ Eigen::Vector3d OnPlane(const Eigen::Vector3d& from, const Eigen::Vector2d& move
   return {from.x() + move.x(), from.y() + move.y(), from.z() - normal.head<2>().dot(move) / normal.z()};
 }
 
-class Maker {
+class PartsMaker {
  public:
-  explicit Maker(const Building& building) : solid_(building.lod22), overhang_m_(building.overhang_m), edges_(EdgesOf(solid_)) {
+  explicit PartsMaker(const Building& building) : solid_(building.lod22), overhang_m_(building.overhang_m), edges_(EdgesOf(solid_)) {
     for (const Face& face : solid_.face) normal_.push_back(NormalOf(solid_, face));
   }
 
@@ -154,7 +154,7 @@ class Maker {
 }  // namespace
 
 ModelParts PartsOf(const Building& building) {
-  return Maker(building).Make();
+  return PartsMaker(building).Make();
 }
 
 }  // namespace skyquilt::buildings

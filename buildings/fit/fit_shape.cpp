@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "buildings/fit/fit_parameters.h"
 #include "buildings/fit/fit_points.h"
 #include "buildings/fit/ground_level.h"
 #include "buildings/fit/observations.h"
-#include "buildings/fit/parameters.h"
 #include "buildings/fit/roof_groups.h"
 #include "buildings/fit/solve.h"
 #include "buildings/fit/wall_groups.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "buildings/fit/fit_parameters.h"
 #include "buildings/fit/fit_shape.h"
-#include "buildings/fit/parameters.h"
 #include "buildings/fit/roof_pieces.h"
 
 namespace skyquilt::buildings {

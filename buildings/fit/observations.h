@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "buildings/building.h"
-#include "buildings/fit/parameters.h"
+#include "buildings/fit/fit_parameters.h"
 
 namespace skyquilt::buildings {
 

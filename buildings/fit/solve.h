@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "buildings/fit/fit_parameters.h"
 #include "buildings/fit/observations.h"
-#include "buildings/fit/parameters.h"
 
 namespace skyquilt::buildings {
 

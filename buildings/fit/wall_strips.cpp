@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "buildings/fit/parameters.h"
+#include "buildings/fit/fit_parameters.h"
 
 namespace skyquilt::buildings {
 namespace {

@@ -29,9 +29,9 @@ double Cosine(double angle_deg) {
   return std::cos(std::min(angle_deg, 90.0) * std::numbers::pi / 180.0);
 }
 
-class Grower {
+class PlaneGrower {
  public:
-  Grower(const PointCloud& cloud, std::span<const uint32_t> chosen, const PlaneOptions& options, base::ThreadPool& threads)
+  PlaneGrower(const PointCloud& cloud, std::span<const uint32_t> chosen, const PlaneOptions& options, base::ThreadPool& threads)
       : cloud_(cloud),
         chosen_(chosen),
         options_(options),
@@ -237,7 +237,7 @@ std::vector<RoofPlane> GrowPlanes(const PointCloud& cloud, std::span<const uint3
   SKYQUILT_CHECK(options.distance_m > 0.0 && options.reach_m > 0.0 && options.angle_deg > 0.0, "distance " + std::to_string(options.distance_m) +
                                                                                                    ", reach " + std::to_string(options.reach_m) +
                                                                                                    ", angle " + std::to_string(options.angle_deg));
-  return Grower(cloud, chosen, options, threads).Grow();
+  return PlaneGrower(cloud, chosen, options, threads).Grow();
 }
 
 }  // namespace skyquilt::buildings

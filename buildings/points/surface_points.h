@@ -28,7 +28,7 @@ struct PointCloud {
   Eigen::Vector3d At(size_t i) const { return middle + points[i].position.cast<double>(); }
 };
 
-// Height of the bare ground on a grid along east and north; bilinear between cell centres.
+// Height of the bare ground at the nodes of a grid along east and north (not in cells, as of geo::PlaneGrid); bilinear between nodes.
 class GroundGrid {
  public:
   // height_z: [row][column], ENU z at origin + cell_m * (column, row); NaN: none.

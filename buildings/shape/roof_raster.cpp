@@ -44,11 +44,10 @@ void PutHeights(const std::vector<AxisPoint>& roof, RoofRaster* raster) {
   std::vector<int64_t> cell_of(roof.size(), -1);
   std::vector<float> top(raster->height.size(), -std::numeric_limits<float>::infinity());
   for (size_t i = 0; i < roof.size(); ++i) {
-    const Eigen::Vector2d place = (roof[i].at.head<2>() - raster->origin) / raster->cell_m;
-    if (!(place.x() >= 0.0 && place.y() >= 0.0 && place.x() < raster->columns && place.y() < raster->rows)) continue;
-    const size_t cell = raster->Index(static_cast<int>(place.x()), static_cast<int>(place.y()));
-    if (raster->covered[cell] == 0) continue;
-    cell_of[i] = static_cast<int64_t>(cell);
+    const int64_t at = raster->CellAt(roof[i].at.head<2>());
+    const auto cell = static_cast<size_t>(at);
+    if (at < 0 || raster->covered[cell] == 0) continue;
+    cell_of[i] = at;
     top[cell] = std::max(top[cell], static_cast<float>(roof[i].at.z()));
   }
   std::vector<double> sum(raster->height.size());
@@ -112,9 +111,8 @@ RoofRaster MakeRoofRaster(const AxisPoints& points, double gsd_m) {
   raster.origin = box.min() - Eigen::Vector2d::Constant(kMargin * raster.cell_m);
   raster.columns = static_cast<int>(std::ceil(box.sizes().x() / raster.cell_m)) + 2 * kMargin;
   raster.rows = static_cast<int>(std::ceil(box.sizes().y() / raster.cell_m)) + 2 * kMargin;
-  const size_t cells = static_cast<size_t>(raster.columns) * static_cast<size_t>(raster.rows);
-  raster.height.assign(cells, std::numeric_limits<float>::quiet_NaN());
-  raster.covered.assign(cells, 0);
+  raster.height.assign(raster.size(), std::numeric_limits<float>::quiet_NaN());
+  raster.covered.assign(raster.size(), 0);
   Cover(points.outline, &raster);
   PutHeights(points.roof, &raster);
   CloseGaps(&raster);

@@ -7,7 +7,7 @@
 
 #include "coordinator/poses/task_message.h"
 #include "coordinator/ranks/failure.h"
-#include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/rank_messages.h"
 #include "core/base/json_text.h"
 #include "core/base/log.h"
 

@@ -7,7 +7,7 @@
 #include "buildings/buildings_options.h"
 #include "coordinator/project/run_options.h"
 #include "coordinator/project/stamp.h"
-#include "core/brightness/options.h"
+#include "core/brightness/brightness_options.h"
 #include "core/config/options.h"
 #include "core/config/override.h"
 #include "evaluate/evaluate.h"

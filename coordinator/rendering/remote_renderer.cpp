@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/rank_messages.h"
 #include "core/base/errors.h"
 #include "core/base/json_text.h"
 

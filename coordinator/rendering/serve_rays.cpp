@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "coordinator/ranks/messages.h"
 #include "coordinator/ranks/rank_group.h"
+#include "coordinator/ranks/rank_messages.h"
 #include "coordinator/rendering/block_owners.h"
 #include "coordinator/rendering/ray_request.h"
 #include "core/base/errors.h"

@@ -52,11 +52,11 @@ void Make(const survey::Survey& survey, const partition::BlockSet& blocks, const
       }
     }
   };
-  const products::FieldPreview made =
+  const products::FieldPreview preview =
       products::MakeFieldPreview(InfoOfContext(context, survey, blocks, project), caster,
                                  std::clamp(seconds, kFewestPreviewSeconds, kMostPreviewSeconds), settings.products, project.ProductsFolder());
-  base::LogInfo("picture from the context: {}, {} x {} cells of {:.3g} m", made.picture.string(), made.grid.width, made.grid.height,
-                made.grid.resolution_m);
+  base::LogInfo("picture from the context: {}, {} x {} cells of {:.3g} m", preview.picture.string(), preview.grid.width, preview.grid.height,
+                preview.grid.resolution_m);
 }
 
 }  // namespace

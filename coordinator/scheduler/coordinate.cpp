@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/rank_messages.h"
 #include "coordinator/ranks/shared_folder.h"
 #include "coordinator/scheduler/rank_speeds.h"
 #include "core/base/cancel.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/brightness/brightness_options.h"
 #include "core/brightness/luminance.h"
-#include "core/brightness/options.h"
 #include "core/brightness/response_learner.h"
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"

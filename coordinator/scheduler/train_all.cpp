@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "coordinator/ranks/messages.h"
 #include "coordinator/ranks/rank_group.h"
+#include "coordinator/ranks/rank_messages.h"
 #include "coordinator/ranks/shared_folder.h"
 #include "coordinator/scheduler/block_queue.h"
 #include "coordinator/scheduler/context_preview.h"

@@ -10,10 +10,10 @@ namespace skyquilt::coordinator {
 void MakeFirstPicture(const Pipeline& pipeline, const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known,
                       base::ThreadPool& threads) {
   AsPreview(pipeline.settings, pipeline.project, "preview of the orthophoto", [&](const std::filesystem::path& folder) {
-    const products::PointPreview made = products::MakePointPreview(survey, pipeline.settings.products, folder, threads);
+    const products::PointPreview preview = products::MakePointPreview(survey, pipeline.settings.products, folder, threads);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - poses_known).count();
-    base::LogInfo("first picture: {}, {:.0f} s after the poses ({} photos on the sparse points, {} x {} cells of {:.3g} m)", made.picture.string(),
-                  seconds, made.photos, made.grid.width, made.grid.height, made.grid.resolution_m);
+    base::LogInfo("first picture: {}, {:.0f} s after the poses ({} photos on the sparse points, {} x {} cells of {:.3g} m)", preview.picture.string(),
+                  seconds, preview.photos, preview.grid.width, preview.grid.height, preview.grid.resolution_m);
   });
 }
 

@@ -1,7 +1,7 @@
 #include "coordinator/stages/serve_rank.h"
 
 #include "coordinator/poses/rank_tasks.h"
-#include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/rank_messages.h"
 #include "coordinator/rendering/serve_rays.h"
 #include "coordinator/scheduler/coordinate.h"
 #include "coordinator/scheduler/train_all.h"

@@ -42,10 +42,10 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
     photos = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, session.threads());
     input.photos = &*photos;
   }
-  const surface::SurfaceResult made = surface::MakeSurface(input, session.threads());
-  base::LogInfo("surface from {} photos and {} virtual views: {} triangles, {} points, {} file(s) in {}: {}", made.photos, made.virtual_views,
-                base::FormatCount(static_cast<double>(made.triangles)), base::FormatCount(static_cast<double>(made.points)), made.files.size(),
-                base::FormatDuration(made.seconds), project.SurfaceFolder().string());
+  const surface::SurfaceResult result = surface::MakeSurface(input, session.threads());
+  base::LogInfo("surface from {} photos and {} virtual views: {} triangles, {} points, {} file(s) in {}: {}", result.photos, result.virtual_views,
+                base::FormatCount(static_cast<double>(result.triangles)), base::FormatCount(static_cast<double>(result.points)), result.files.size(),
+                base::FormatDuration(result.seconds), project.SurfaceFolder().string());
   return StageStamp::kDone;
 }
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/brightness/options.h"
+#include "core/brightness/brightness_options.h"
 #include "core/checkpoint/archive.h"
 
 namespace skyquilt::brightness {

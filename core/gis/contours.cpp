@@ -128,7 +128,7 @@ double AllowedContourInterval(std::span<const float> height_m, double interval_m
 int64_t WriteContours(const MapGrid& grid, std::span<const float> height_m, double interval_m, const std::string& vertical,
                       const std::filesystem::path& gpkg, const std::map<std::string, std::string>& metadata) {
   SKYQUILT_CHECK(std::isfinite(interval_m) && interval_m > 0.0, std::to_string(interval_m));
-  SKYQUILT_CHECK(height_m.size() == static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), std::to_string(height_m.size()));
+  SKYQUILT_CHECK(height_m.size() == grid.size(), std::to_string(height_m.size()));
   const internal::QuietErrors quiet;
   const internal::FixedTimeStamp time_stamp;
   std::vector<Line> lines;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 
 #include "core/geo/utm.h"
 
@@ -18,6 +19,8 @@ struct MapGrid {
   int width = 0;
   int height = 0;
 
+  size_t size() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+  size_t Index(int column, int row) const { return static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column); }
   // Easting and northing of a cell's centre.
   Eigen::Vector2d CellCentre(double column, double row) const { return {left + (column + 0.5) * resolution_m, top - (row + 0.5) * resolution_m}; }
   // Column and row of a position; whole numbers at cell centres.

@@ -26,13 +26,13 @@ std::array<float, 3> Background::Color(const Eigen::Vector3d& origin_enu, const 
 
 void PutBackground(const Background& background, checkpoint::ArchiveWriter& writer) {
   for (size_t c = 0; c < 3; ++c) writer.SetAttribute(kMean[c], static_cast<double>(background.mean_srgb[c]));
-  const HeightMap& s = background.surface;
-  if (s.Empty()) return;
-  writer.SetAttribute("background_min_x", s.min_x());
-  writer.SetAttribute("background_min_y", s.min_y());
-  writer.SetAttribute("background_cell_m", s.cell_m());
-  writer.Put(kHeights, s.heights(), {s.rows(), s.columns()});
-  writer.Put(kColors, background.rgb_srgb, {s.rows(), s.columns(), 3});
+  if (background.surface.Empty()) return;
+  const geo::PlaneGrid& grid = background.surface.grid();
+  writer.SetAttribute("background_min_x", grid.origin.x());
+  writer.SetAttribute("background_min_y", grid.origin.y());
+  writer.SetAttribute("background_cell_m", grid.cell_m);
+  writer.Put(kHeights, background.surface.heights(), {grid.rows, grid.columns});
+  writer.Put(kColors, background.rgb_srgb, {grid.rows, grid.columns, 3});
 }
 
 Background GetBackground(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
@@ -47,9 +47,9 @@ Background GetBackground(const checkpoint::ArchiveReader& reader, const std::fil
     throw base::InputError(file, "heights and colours of the background have different sizes", fix);
   }
   try {
-    background.surface =
-        HeightMap(reader.DoubleAttribute("background_min_x"), reader.DoubleAttribute("background_min_y"), reader.DoubleAttribute("background_cell_m"),
-                  static_cast<int>(shape[1]), static_cast<int>(shape[0]), reader.Doubles(kHeights));
+    const Eigen::Vector2d corner(reader.DoubleAttribute("background_min_x"), reader.DoubleAttribute("background_min_y"));
+    const geo::PlaneGrid grid(corner, reader.DoubleAttribute("background_cell_m"), static_cast<int>(shape[1]), static_cast<int>(shape[0]));
+    background.surface = HeightMap(grid, reader.Doubles(kHeights));
   } catch (const std::invalid_argument& error) {
     throw base::InputError(file, std::string("its background is damaged: ") + error.what(), fix);
   }

@@ -22,19 +22,17 @@ Along Between(double position, int count) {
 
 }  // namespace
 
-HeightMap::HeightMap(double min_x, double min_y, double cell_m, int columns, int rows, std::vector<double> heights)
-    : min_x_(min_x), min_y_(min_y), cell_m_(cell_m), columns_(columns), rows_(rows), heights_(std::move(heights)) {
-  if (columns < 1 || rows < 1 || !(cell_m > 0.0) || heights_.size() != static_cast<size_t>(columns) * static_cast<size_t>(rows)) {
-    throw std::invalid_argument("a height map of " + std::to_string(columns) + " x " + std::to_string(rows) + " cells with " +
+HeightMap::HeightMap(const geo::PlaneGrid& grid, std::vector<double> heights) : grid_(grid), heights_(std::move(heights)) {
+  if (grid.columns < 1 || grid.rows < 1 || !(grid.cell_m > 0.0) || heights_.size() != grid.size()) {
+    throw std::invalid_argument("a height map of " + std::to_string(grid.columns) + " x " + std::to_string(grid.rows) + " cells with " +
                                 std::to_string(heights_.size()) + " heights");
   }
 }
 
 HeightMap::Corners HeightMap::Around(double x, double y) const {
-  const Along u = Between((x - min_x_) / cell_m_, columns_);
-  const Along v = Between((y - min_y_) / cell_m_, rows_);
-  const auto index = [&](int row, int column) { return static_cast<size_t>(row) * static_cast<size_t>(columns_) + static_cast<size_t>(column); };
-  return {{index(v.first, u.first), index(v.first, u.second), index(v.second, u.first), index(v.second, u.second)},
+  const Along u = Between((x - grid_.origin.x()) / grid_.cell_m, grid_.columns);
+  const Along v = Between((y - grid_.origin.y()) / grid_.cell_m, grid_.rows);
+  return {{grid_.Index(u.first, v.first), grid_.Index(u.second, v.first), grid_.Index(u.first, v.second), grid_.Index(u.second, v.second)},
           {(1.0 - v.share) * (1.0 - u.share), (1.0 - v.share) * u.share, v.share * (1.0 - u.share), v.share * u.share}};
 }
 
@@ -61,20 +59,16 @@ bool HeightMap::Intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& 
   return true;
 }
 
-void FillFromSurroundings(int columns, int rows, int channels, std::vector<double>* values, std::vector<double> weights) {
-  if (columns <= 1 && rows <= 1) return;
+void FillFromSurroundings(const base::GridShape& shape, int channels, std::vector<double>* values, std::vector<double> weights) {
+  if (shape.columns <= 1 && shape.rows <= 1) return;
   if (std::ranges::none_of(weights, [](double weight) { return weight > 0.0; })) return;
-  const int half_columns = (columns + 1) / 2, half_rows = (rows + 1) / 2;
+  const base::GridShape half{(shape.columns + 1) / 2, (shape.rows + 1) / 2};
   const auto n = static_cast<size_t>(channels);
-  const auto index = [](int row, int column, int width) {
-    return static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
-  };
-  std::vector<double> coarse(static_cast<size_t>(half_columns) * static_cast<size_t>(half_rows) * n, 0.0);
-  std::vector<double> coarse_weights(static_cast<size_t>(half_columns) * static_cast<size_t>(half_rows), 0.0);
+  std::vector<double> coarse(half.size() * n, 0.0), coarse_weights(half.size(), 0.0);
   bool all = true;
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      const size_t from = index(row, column, columns), to = index(row / 2, column / 2, half_columns);
+  for (int row = 0; row < shape.rows; ++row) {
+    for (int column = 0; column < shape.columns; ++column) {
+      const size_t from = shape.Index(column, row), to = half.Index(column / 2, row / 2);
       all = all && weights[from] > 0.0;
       coarse_weights[to] += weights[from];
       for (size_t c = 0; c < n; ++c) coarse[to * n + c] += weights[from] * (*values)[from * n + c];
@@ -85,16 +79,16 @@ void FillFromSurroundings(int columns, int rows, int channels, std::vector<doubl
     for (size_t c = 0; c < n && coarse_weights[i] > 0.0; ++c) coarse[i * n + c] /= coarse_weights[i];
     coarse_weights[i] = std::min(coarse_weights[i], 1.0);
   }
-  FillFromSurroundings(half_columns, half_rows, channels, &coarse, std::move(coarse_weights));
-  for (int row = 0; row < rows; ++row) {
-    const Along v = Between(0.5 * (row + 0.5), half_rows);
-    for (int column = 0; column < columns; ++column) {
-      const size_t to = index(row, column, columns);
+  FillFromSurroundings(half, channels, &coarse, std::move(coarse_weights));
+  for (int row = 0; row < shape.rows; ++row) {
+    const Along v = Between(0.5 * (row + 0.5), half.rows);
+    for (int column = 0; column < shape.columns; ++column) {
+      const size_t to = shape.Index(column, row);
       const double own = std::min(weights[to], 1.0);
       if (own >= 1.0) continue;
-      const Along u = Between(0.5 * (column + 0.5), half_columns);
+      const Along u = Between(0.5 * (column + 0.5), half.columns);
       for (size_t c = 0; c < n; ++c) {
-        const auto at = [&](int r, int s) { return coarse[index(r, s, half_columns) * n + c]; };
+        const auto at = [&](int r, int s) { return coarse[half.Index(s, r) * n + c]; };
         const double around = (1.0 - v.share) * ((1.0 - u.share) * at(v.first, u.first) + u.share * at(v.first, u.second)) +
                               v.share * ((1.0 - u.share) * at(v.second, u.first) + u.share * at(v.second, u.second));
         (*values)[to * n + c] = own * (*values)[to * n + c] + (1.0 - own) * around;

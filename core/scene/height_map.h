@@ -6,21 +6,18 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/geo/plane_grid.h"
+
 namespace skyquilt::scene {
 
 class HeightMap {
  public:
   HeightMap() = default;  // empty
-  // heights: [row][column], at cell centres min + (index + 0.5) * cell_m; columns go east, rows north.
-  // Throws std::invalid_argument when there are not columns * rows heights, or cell_m is not positive.
-  HeightMap(double min_x, double min_y, double cell_m, int columns, int rows, std::vector<double> heights);
+  // heights: [row][column], at cell centres. Throws std::invalid_argument when there are not as many as cells, or cells have no size.
+  HeightMap(const geo::PlaneGrid& grid, std::vector<double> heights);
 
   bool Empty() const { return heights_.empty(); }
-  double min_x() const { return min_x_; }
-  double min_y() const { return min_y_; }
-  double cell_m() const { return cell_m_; }
-  int columns() const { return columns_; }
-  int rows() const { return rows_; }
+  const geo::PlaneGrid& grid() const { return grid_; }
   const std::vector<double>& heights() const { return heights_; }
 
   // The four cells around a position and their bilinear weights, which sum to 1. Positions outside the grid are clamped to its edge.
@@ -35,13 +32,12 @@ class HeightMap {
   bool Intersect(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Eigen::Vector3d* x_in_enu) const;
 
  private:
-  double min_x_ = 0.0, min_y_ = 0.0, cell_m_ = 1.0;
-  int columns_ = 0, rows_ = 0;
+  geo::PlaneGrid grid_;
   std::vector<double> heights_;
 };
 
 // Fills cells without a value (weight 0) smoothly from their neighbourhood, by averages over coarser and coarser grids (push-pull, Gortler et al.
 // 1996). values: [row][column][channel]; weights: [row][column]. Does nothing when no cell has a value.
-void FillFromSurroundings(int columns, int rows, int channels, std::vector<double>* values, std::vector<double> weights);
+void FillFromSurroundings(const base::GridShape& shape, int channels, std::vector<double>* values, std::vector<double> weights);
 
 }  // namespace skyquilt::scene

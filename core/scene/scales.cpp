@@ -32,7 +32,7 @@ Scales GetScales(const checkpoint::ArchiveReader& scene) {
   return scales;
 }
 
-void ScaleCheck::Look(std::span<const render::Ray> rays, std::span<const render::RayColor> colors) {
+void ScaleCheck::Check(std::span<const render::Ray> rays, std::span<const render::RayColor> colors) {
   if (warned_ || !scales_.Cones() || !(scales_.footprint_max_m > 0.0)) return;
   size_t seen = 0, wide = 0, narrow = 0;
   double sum_log = 0.0;

@@ -24,7 +24,7 @@ class ScaleCheck {
  public:
   explicit ScaleCheck(const Scales& scales) : scales_(scales) {}
   // rays and colors have the same length.
-  void Look(std::span<const render::Ray> rays, std::span<const render::RayColor> colors);
+  void Check(std::span<const render::Ray> rays, std::span<const render::RayColor> colors);
 
  private:
   Scales scales_;

@@ -80,7 +80,7 @@ struct Scene::Impl {
       for (size_t i = 0; i < rays.size(); ++i) out[i] = render::FinalColor(in_flight[i].state);
     }
     if (Conceals(appearance.look)) ShowConcealed(out);
-    scale_check.Look(rays, out);
+    scale_check.Check(rays, out);
   }
 
   SceneInfo info;

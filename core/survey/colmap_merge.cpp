@@ -31,11 +31,11 @@ class Attached {
 
 // The tables of the attached part, empty.
 void MakeTables(const DatabaseConnection& connection) {
-  std::vector<std::string> made;
+  std::vector<std::string> statements;
   DatabaseStatement tables(connection, "SELECT sql FROM part.sqlite_master WHERE sql IS NOT NULL AND name NOT LIKE 'sqlite_%' ORDER BY rowid",
                            kMerge);
-  while (tables.Next()) made.push_back(tables.Text(0));
-  for (const std::string& sql : made) connection.Execute(sql.c_str(), kMerge);
+  while (tables.Next()) statements.push_back(tables.Text(0));
+  for (const std::string& sql : statements) connection.Execute(sql.c_str(), kMerge);
   DatabaseStatement version(connection, "PRAGMA part.user_version", kMerge);
   version.Next();
   connection.Execute(("PRAGMA main.user_version = " + std::to_string(version.Int(0))).c_str(), kMerge);

@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "prepare/bundle/lens.h"
+#include "prepare/bundle/adjusted_lens.h"
 
 namespace skyquilt::prepare::bundle {
 

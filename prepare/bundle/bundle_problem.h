@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/camera/camera.h"
-#include "prepare/bundle/lens.h"
+#include "prepare/bundle/adjusted_lens.h"
 
 namespace skyquilt::prepare::bundle {
 

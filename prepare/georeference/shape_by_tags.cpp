@@ -13,7 +13,7 @@
 #include "core/geo/enu_frame.h"
 #include "prepare/control/fit/adjust_to_tags.h"
 #include "prepare/georeference/dome_fit.h"
-#include "prepare/georeference/sparse_cloud.h"
+#include "prepare/georeference/filter_sparse_points.h"
 #include "prepare/poses/focal_check.h"
 #include "prepare/poses/seed/take_off_height.h"
 

@@ -92,14 +92,14 @@ class BrickExtractor {
     const int16_t signs = cells_.At(cell);
     if (signs == NearCells::kUnknown || signs == 0 || signs == 255) return;
     const CellCycles& cycles = CyclesOf(cell, static_cast<size_t>(signs));
-    CellVertices made{static_cast<uint16_t>(NodeInBrick(cell.x(), cell.y(), cell.z())), {}, static_cast<uint32_t>(surface->key.size())};
-    made.of_edge.fill(CellVertices::kNone);
+    CellVertices cell_vertices{static_cast<uint16_t>(NodeInBrick(cell.x(), cell.y(), cell.z())), {}, static_cast<uint32_t>(surface->key.size())};
+    cell_vertices.of_edge.fill(CellVertices::kNone);
     const uint8_t* cycle = cycles.edges.data();
     for (size_t i = 0; i < static_cast<size_t>(cycles.n_cycles); ++i) {
-      AddSheet(cell, cycle, cycles.length[i], &made, surface);
+      AddSheet(cell, cycle, cycles.length[i], &cell_vertices, surface);
       cycle += cycles.length[i];
     }
-    if (surface->key.size() > made.first_vertex) surface->cells.push_back(made);
+    if (surface->key.size() > cell_vertices.first_vertex) surface->cells.push_back(cell_vertices);
   }
 
   void AddQuads(const Eigen::Vector3i& node, BrickSurface* surface) const {
@@ -157,7 +157,7 @@ class BrickExtractor {
     return std::max(nodes_.views[NearNodes::Index(lower)], nodes_.views[NearNodes::Index(lower + Eigen::Vector3i::Unit(edge / 4))]);
   }
 
-  void AddSheet(const Eigen::Vector3i& cell, const uint8_t* cycle, size_t length, CellVertices* made, BrickSurface* surface) const {
+  void AddSheet(const Eigen::Vector3i& cell, const uint8_t* cycle, size_t length, CellVertices* cell_vertices, BrickSurface* surface) const {
     std::array<bool, kCellEdges> kept{};
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (size_t i = 0; i < length; ++i) {
@@ -176,12 +176,12 @@ class BrickExtractor {
       }
       if (!in_run) {
         in_run = true;
-        const auto number = static_cast<int>(surface->key.size() - made->first_vertex);
+        const auto number = static_cast<int>(surface->key.size() - cell_vertices->first_vertex);
         surface->position.emplace_back((global.cast<double>() + sum / static_cast<double>(length)) * options_.voxel_m);
         surface->key.push_back(VertexKey(global, number));
         surface->views.push_back(0);
       }
-      made->of_edge[cycle[at]] = static_cast<uint8_t>(surface->key.size() - 1 - made->first_vertex);
+      cell_vertices->of_edge[cycle[at]] = static_cast<uint8_t>(surface->key.size() - 1 - cell_vertices->first_vertex);
       surface->views.back() = std::max(surface->views.back(), ViewsOf(cell, cycle[at]));
     }
   }

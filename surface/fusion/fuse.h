@@ -1,6 +1,6 @@
 // From pictures of depth to a mesh, piece by piece: distances to the surface are averaged on the lattice (truncated signed distance function, Curless
 // and Levoy 1996), and the surface where they change sign is meshed (dual marching, one vertex per sheet and cell).
-// Lengths are in metres in survey ENU, boxes in indices of the lattice (lattice.h).
+// Lengths are in metres in survey ENU, boxes in indices of the lattice (fusion_lattice.h).
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/thread_pool.h"
-#include "surface/fusion/lattice.h"
+#include "surface/fusion/fusion_lattice.h"
 #include "surface/mesh.h"
 #include "surface/views/depth_views.h"
 

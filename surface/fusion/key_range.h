@@ -1,7 +1,7 @@
 // The part of the lattice in which VertexKey tells all cells apart.
 #pragma once
 
-#include "surface/fusion/lattice.h"
+#include "surface/fusion/fusion_lattice.h"
 
 namespace skyquilt::surface {
 

@@ -7,7 +7,6 @@
 
 #include "core/base/cancel.h"
 #include "core/base/order_statistics.h"
-#include "surface/maps/float_grid.h"
 #include "surface/maps/low_outliers.h"
 
 namespace skyquilt::surface {
@@ -20,8 +19,8 @@ constexpr int kSmoothingPasses = 2;
 
 // Means of factor x factor cells; cells of which more than half are missing are left out. What is left over at the eastern and southern edge is
 // dropped.
-FloatGrid BlockMeans(const HeightRaster& terrain, const std::vector<uint8_t>& mask, int factor) {
-  FloatGrid means(terrain.grid.width / factor, terrain.grid.height / factor);
+base::Grid<float> BlockMeans(const HeightRaster& terrain, const std::vector<uint8_t>& mask, int factor) {
+  base::Grid<float> means(terrain.grid.width / factor, terrain.grid.height / factor, kNoHeight);
   for (int row = 0; row < means.rows; ++row) {
     base::ThrowIfCancelled();
     for (int column = 0; column < means.columns; ++column) {
@@ -29,7 +28,7 @@ FloatGrid BlockMeans(const HeightRaster& terrain, const std::vector<uint8_t>& ma
       int n = 0;
       for (int y = row * factor; y < (row + 1) * factor; ++y) {
         for (int x = column * factor; x < (column + 1) * factor; ++x) {
-          const size_t cell = static_cast<size_t>(y) * static_cast<size_t>(terrain.grid.width) + static_cast<size_t>(x);
+          const size_t cell = terrain.grid.Index(x, y);
           if (!std::isfinite(terrain.height_m[cell]) || (!mask.empty() && mask[cell] == 0)) continue;
           sum += static_cast<double>(terrain.height_m[cell]);
           ++n;
@@ -42,8 +41,8 @@ FloatGrid BlockMeans(const HeightRaster& terrain, const std::vector<uint8_t>& ma
 }
 
 // One pass of the binomial filter 1 2 1 along rows or columns; missing neighbours are replaced by the cell itself, so that edges stay in place.
-void Smooth(FloatGrid* grid, int step_column, int step_row) {
-  const FloatGrid before = *grid;
+void Smooth(base::Grid<float>* grid, int step_column, int step_row) {
+  const base::Grid<float> before = *grid;
   for (int row = 0; row < grid->rows; ++row) {
     for (int column = 0; column < grid->columns; ++column) {
       const float own = before.At(column, row);
@@ -56,7 +55,7 @@ void Smooth(FloatGrid* grid, int step_column, int step_row) {
   }
 }
 
-double Relief(const FloatGrid& grid) {
+double Relief(const base::Grid<float>& grid) {
   std::vector<float> heights;
   std::copy_if(grid.value.begin(), grid.value.end(), std::back_inserter(heights), [](float height) { return !std::isnan(height); });
   if (heights.empty()) return 0.0;
@@ -81,7 +80,7 @@ ContourRaster MakeContourRaster(const HeightRaster& terrain, const std::vector<u
   const gis::MapGrid& grid = terrain.grid;
   const int least_side = std::max(1, std::min(grid.width, grid.height));
   const int factor = std::clamp(static_cast<int>(std::lround(cell_m / grid.resolution_m)), 1, least_side);
-  FloatGrid heights = BlockMeans(terrain, mask, factor);
+  base::Grid<float> heights = BlockMeans(terrain, mask, factor);
   const double noise_m = NoiseOf(heights);
   for (int pass = 0; pass < kSmoothingPasses; ++pass) {
     Smooth(&heights, 1, 0);

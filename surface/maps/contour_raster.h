@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "surface/maps/surface_maps.h"
+#include "surface/maps/height_raster.h"
 
 namespace skyquilt::surface {
 

@@ -5,7 +5,8 @@
 #include <cstdint>
 
 #include "core/base/cancel.h"
-#include "surface/maps/plane_fit.h"
+#include "surface/maps/cell_plane.h"
+#include "surface/maps/height_raster.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -25,8 +26,8 @@ Between Neighbours(float position, int count) {
 }
 
 // Means of 2 x 2 cells over those with a value.
-FloatGrid Halved(const FloatGrid& fine) {
-  FloatGrid coarse((fine.columns + 1) / 2, (fine.rows + 1) / 2);
+base::Grid<float> Halved(const base::Grid<float>& fine) {
+  base::Grid<float> coarse((fine.columns + 1) / 2, (fine.rows + 1) / 2, kNoHeight);
   for (int row = 0; row < coarse.rows; ++row) {
     for (int column = 0; column < coarse.columns; ++column) {
       float sum = 0.0F, n = 0.0F;
@@ -45,7 +46,7 @@ FloatGrid Halved(const FloatGrid& fine) {
 }
 
 // Moves every cell of a gap towards the mean of its neighbours, in alternating order so that no direction is preferred.
-void Relax(const std::vector<uint8_t>& known, FloatGrid* grid) {
+void Relax(const std::vector<uint8_t>& known, base::Grid<float>* grid) {
   const int last_column = grid->columns - 1, last_row = grid->rows - 1;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     base::ThrowIfCancelled();
@@ -75,11 +76,11 @@ void Relax(const std::vector<uint8_t>& known, FloatGrid* grid) {
   }
 }
 
-void Solve(FloatGrid* grid) {
+void Solve(base::Grid<float>* grid) {
   std::vector<uint8_t> known(grid->value.size());
   std::transform(grid->value.begin(), grid->value.end(), known.begin(), [](float value) { return std::isnan(value) ? uint8_t{0} : uint8_t{1}; });
   if (std::find(known.begin(), known.end(), uint8_t{0}) == known.end()) return;
-  FloatGrid coarse = Halved(*grid);
+  base::Grid<float> coarse = Halved(*grid);
   // A grid of one cell is known by now, as its cell is the mean of all.
   Solve(&coarse);
   for (int row = 0; row < grid->rows; ++row) {
@@ -98,7 +99,7 @@ void Solve(FloatGrid* grid) {
 
 }  // namespace
 
-void FillSmoothly(FloatGrid* grid) {
+void FillSmoothly(base::Grid<float>* grid) {
   PlaneFit fit(0.5 * grid->columns, 0.5 * grid->rows);
   bool any = false;
   for (int row = 0; row < grid->rows; ++row) {
@@ -111,7 +112,7 @@ void FillSmoothly(FloatGrid* grid) {
   }
   if (!any) return;
   const Plane plane = fit.Fit();
-  FloatGrid rest = *grid;
+  base::Grid<float> rest = *grid;
   for (int row = 0; row < rest.rows; ++row) {
     for (int column = 0; column < rest.columns; ++column) rest.value[rest.Index(column, row)] -= static_cast<float>(plane.At(column, row));
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
-#include "surface/maps/surface_maps.h"
+#include "surface/maps/height_raster.h"
 
 namespace skyquilt::surface {
 

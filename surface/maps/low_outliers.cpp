@@ -7,7 +7,8 @@
 
 #include "core/base/cancel.h"
 #include "core/base/order_statistics.h"
-#include "surface/maps/plane_fit.h"
+#include "surface/maps/cell_plane.h"
+#include "surface/maps/height_raster.h"
 #include "surface/maps/window_filter.h"
 
 namespace skyquilt::surface {
@@ -25,14 +26,14 @@ using Cell = std::pair<int, int>;  // column, row
 
 class PitFinder {
  public:
-  PitFinder(const FloatGrid& grid, double cell_m, double smooth_m)
+  PitFinder(const base::Grid<float>& grid, double cell_m, double smooth_m)
       : grid_(grid),
         noise_m_(NoiseOf(grid)),
         smooth_m_(std::max(smooth_m, kNoiseFactor * noise_m_)),
         depth_m_(std::max(kLeastDepth_m, kNoiseFactor * noise_m_)),
         most_cells_(static_cast<size_t>(kLargestSide_m * kLargestSide_m / (cell_m * cell_m))),
         visited_(grid.value.size(), 0) {
-    const FloatGrid closed = Closing(grid, std::max(1, static_cast<int>(std::lround(0.5 * kLargestSide_m / cell_m))));
+    const base::Grid<float> closed = Closing(grid, std::max(1, static_cast<int>(std::lround(0.5 * kLargestSide_m / cell_m))));
     low_.resize(grid.value.size());
     for (size_t i = 0; i < low_.size(); ++i) low_[i] = static_cast<double>(closed.value[i] - grid.value[i]) > smooth_m_ ? 1 : 0;
   }
@@ -110,7 +111,7 @@ class PitFinder {
 
   bool Inside(int column, int row) const { return column >= 0 && row >= 0 && column < grid_.columns && row < grid_.rows; }
 
-  const FloatGrid& grid_;
+  const base::Grid<float>& grid_;
   double noise_m_, smooth_m_, depth_m_;
   size_t most_cells_;
   std::vector<uint8_t> low_, visited_;
@@ -118,7 +119,7 @@ class PitFinder {
 
 }  // namespace
 
-double NoiseOf(const FloatGrid& grid) {
+double NoiseOf(const base::Grid<float>& grid) {
   // The second difference of three cells in a row: slopes cancel, independent noise is enlarged by the square root of 1 + 4 + 1.
   std::vector<float> differences;
   const size_t step = std::max<size_t>(1, grid.value.size() / kNoiseSamples);
@@ -132,7 +133,7 @@ double NoiseOf(const FloatGrid& grid) {
   return base::kMadToSigma * static_cast<double>(base::UpperMedian(differences)) / std::sqrt(6.0);
 }
 
-int64_t RemoveLowOutliers(FloatGrid* grid, double cell_m, double smooth_m) {
+int64_t RemoveLowOutliers(base::Grid<float>* grid, double cell_m, double smooth_m) {
   const std::vector<Cell> pits = PitFinder(*grid, cell_m, smooth_m).Find();
   for (const auto& [column, row] : pits) grid->value[grid->Index(column, row)] = kNoHeight;
   return static_cast<int64_t>(pits.size());

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "surface/maps/float_grid.h"
+#include "core/base/grid.h"
 
 namespace skyquilt::surface {
 
@@ -12,9 +12,9 @@ namespace skyquilt::surface {
 // within smooth_m (and three times the noise) of one plane. So an alley between houses, whose ends are low, and ground seen through the crown of a
 // tree, which is rough, are kept. Limits: pits beside larger gaps are kept, as are those wider than 5 m; a light well in a flat roof is taken for a
 // pit, which does no harm where the ground is known elsewhere.
-int64_t RemoveLowOutliers(FloatGrid* grid, double cell_m, double smooth_m);
+int64_t RemoveLowOutliers(base::Grid<float>* grid, double cell_m, double smooth_m);
 
 // Standard deviation of the heights of single cells against their neighbours, robustly, in metres; 0 without neighbours.
-double NoiseOf(const FloatGrid& grid);
+double NoiseOf(const base::Grid<float>& grid);
 
 }  // namespace skyquilt::surface

@@ -12,8 +12,8 @@
 #include "core/gis/contours.h"
 #include "core/gis/geotiff.h"
 #include "surface/maps/contour_raster.h"
+#include "surface/maps/find_terrain.h"
 #include "surface/maps/hillshade.h"
-#include "surface/maps/terrain.h"
 
 namespace skyquilt::surface {
 namespace {

@@ -9,19 +9,13 @@
 
 #include "core/base/thread_pool.h"
 #include "core/gis/boundary.h"
-#include "core/gis/map_grid.h"
 #include "surface/map_frame.h"
+#include "surface/maps/height_raster.h"
 #include "surface/mesh.h"
 #include "surface/surface_options.h"
 #include "surface/written_file.h"
 
 namespace skyquilt::surface {
-
-// Heights in map coordinates at the centres of the grid's cells, row 0 in the north; NaN: none.
-struct HeightRaster {
-  gis::MapGrid grid;
-  std::vector<float> height_m;
-};
 
 // The grid of maps with this resolution over the tiles of level 0, outer edges at multiples of the resolution (so that cells coincide with the
 // orthophoto's). Without any vertex it has no cells. Throws base::UsageError with advice when it would have more than 100 million cells.

@@ -11,7 +11,6 @@
 #include "core/base/errors.h"
 #include "core/base/progress.h"
 #include "surface/maps/contour_raster.h"
-#include "surface/maps/float_grid.h"
 #include "surface/maps/surface_maps.h"
 
 namespace skyquilt::surface {
@@ -55,7 +54,7 @@ class TrianglePainter {
       for (int column = FirstAtLeast(west, raster_->grid.width); column <= last_column; ++column) {
         // Rounding in steep triangles must not lead out of their range of heights.
         const double z = std::clamp(corner[0].z() + dx * (column - corner[0].x()) + dy * (row - corner[0].y()), low_z, high_z);
-        float& height = raster_->height_m[static_cast<size_t>(row) * static_cast<size_t>(raster_->grid.width) + static_cast<size_t>(column)];
+        float& height = raster_->height_m[raster_->grid.Index(column, row)];
         if (!(height >= static_cast<float>(z))) height = static_cast<float>(z);
       }
     }
@@ -125,7 +124,7 @@ gis::MapGrid PlanSurfaceGrid(std::span<const MeshTile> tiles, const MapFrame& fr
 }
 
 HeightRaster RasteriseSurface(std::span<const MeshTile> tiles, const MapFrame& frame, const gis::MapGrid& grid) {
-  HeightRaster raster{grid, std::vector<float>(static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), kNoHeight)};
+  HeightRaster raster{grid, std::vector<float>(grid.size(), kNoHeight)};
   if (raster.height_m.empty() || tiles.empty()) return raster;
   base::Progress progress("surface heights", static_cast<double>(tiles.size()), "tiles");
   TrianglePainter painter(&raster);

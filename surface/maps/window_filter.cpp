@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "surface/maps/height_raster.h"
+
 
 namespace skyquilt::surface {
 namespace {
@@ -44,7 +48,7 @@ class LineMinimum {
   std::vector<float> line_, from_start_, to_end_;
 };
 
-void MinimumAlongRows(FloatGrid* grid, int half) {
+void MinimumAlongRows(base::Grid<float>* grid, int half) {
   LineMinimum line(grid->columns, half);
   for (int row = 0; row < grid->rows; ++row) {
     float* values = grid->value.data() + grid->Index(0, row);
@@ -54,7 +58,7 @@ void MinimumAlongRows(FloatGrid* grid, int half) {
   }
 }
 
-void MinimumAlongColumns(FloatGrid* grid, int half) {
+void MinimumAlongColumns(base::Grid<float>* grid, int half) {
   std::vector<LineMinimum> lines(kColumnsAtOnce, LineMinimum(grid->rows, half));
   for (int first = 0; first < grid->columns; first += kColumnsAtOnce) {
     const int n = std::min(kColumnsAtOnce, grid->columns - first);
@@ -69,8 +73,8 @@ void MinimumAlongColumns(FloatGrid* grid, int half) {
 }
 
 // sign 1: minimum, -1: maximum.
-FloatGrid Extreme(const FloatGrid& grid, int half, float sign) {
-  FloatGrid result = grid;
+base::Grid<float> Extreme(const base::Grid<float>& grid, int half, float sign) {
+  base::Grid<float> result = grid;
   if (grid.value.empty()) return result;
   for (float& value : result.value) value = std::isnan(value) ? kInfinity : sign * value;
   // A window that is larger than the grid on all sides sees no more.
@@ -80,35 +84,35 @@ FloatGrid Extreme(const FloatGrid& grid, int half, float sign) {
   return result;
 }
 
-void KeepGaps(const FloatGrid& of, FloatGrid* in) {
+void KeepGaps(const base::Grid<float>& of, base::Grid<float>* in) {
   for (size_t i = 0; i < of.value.size(); ++i) {
     if (std::isnan(of.value[i])) in->value[i] = kNoHeight;
   }
 }
 
-FloatGrid TwoSteps(const FloatGrid& grid, int half, float sign) {
-  FloatGrid first = Extreme(grid, half, sign);
+base::Grid<float> TwoSteps(const base::Grid<float>& grid, int half, float sign) {
+  base::Grid<float> first = Extreme(grid, half, sign);
   KeepGaps(grid, &first);
-  FloatGrid second = Extreme(first, half, -sign);
+  base::Grid<float> second = Extreme(first, half, -sign);
   KeepGaps(grid, &second);
   return second;
 }
 
 }  // namespace
 
-FloatGrid WindowMinimum(const FloatGrid& grid, int half) {
+base::Grid<float> WindowMinimum(const base::Grid<float>& grid, int half) {
   return Extreme(grid, half, 1.0F);
 }
 
-FloatGrid WindowMaximum(const FloatGrid& grid, int half) {
+base::Grid<float> WindowMaximum(const base::Grid<float>& grid, int half) {
   return Extreme(grid, half, -1.0F);
 }
 
-FloatGrid Opening(const FloatGrid& grid, int half) {
+base::Grid<float> Opening(const base::Grid<float>& grid, int half) {
   return TwoSteps(grid, half, 1.0F);
 }
 
-FloatGrid Closing(const FloatGrid& grid, int half) {
+base::Grid<float> Closing(const base::Grid<float>& grid, int half) {
   return TwoSteps(grid, half, -1.0F);
 }
 

@@ -5,7 +5,7 @@
 #include "prepare/control/reading/control_checks.h"
 #include "prepare/control/reading/read_control.h"
 #include "tests/fuzz/fuzz_target.h"
-#include "tests/prepare/control/reading/made_control.h"
+#include "tests/prepare/control/reading/made_control_files.h"
 
 namespace skyquilt::fuzz {
 namespace {

@@ -281,7 +281,7 @@ TEST(HeightShift, IsExactInEveryCell) {
     const Eigen::Vector2d middle = geo::UtmFromGeodetic(origin, grid.zone);
     grid.left = middle.x() - 300.0;
     grid.top = middle.y() + 300.0;
-    std::vector<float> cells(static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height), 0.0F);
+    std::vector<float> cells(grid.size(), 0.0F);
     cells[5] = -9999.0F;
     HeightShift shift(heights, grid);
     const size_t half = cells.size() / 83 * 40;
@@ -292,7 +292,7 @@ TEST(HeightShift, IsExactInEveryCell) {
       for (int column = 0; column < grid.width; ++column) {
         if (row == 0 && column == 5) continue;
         const geo::Geodetic place = geo::GeodeticFromUtm(grid.CellCentre(column, row), 0.0, grid.zone);
-        const auto cell = static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(column);
+        const size_t cell = grid.Index(column, row);
         ASSERT_NEAR(static_cast<double>(cells[cell]), -geo::Egm96Undulation(place.latitude_deg, place.longitude_deg), 1e-5) << row << " " << column;
       }
     }

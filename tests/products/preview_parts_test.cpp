@@ -13,8 +13,8 @@
 #include "products/field_preview.h"
 #include "products/map_products.h"
 #include "products/overlap_gains.h"
+#include "products/photo_choice.h"
 #include "products/sparse_surface.h"
-#include "products/view_choice.h"
 #include "tests/products/analytic_scene.h"
 #include "tests/products/patterned_survey.h"
 #include "tests/support/temporary_folder.h"
@@ -179,8 +179,7 @@ TEST(FieldPreview, ShowsTheFieldAndMakesWayForTheOrthophoto) {
   ProductOptions options;
   options.ortho = false;
   MakeMapProducts(info, scene.Caster(), options, folder.path());
-  WritePreview(info, PreviewMap{made.grid, std::vector<uint8_t>(4 * static_cast<size_t>(made.grid.width) * static_cast<size_t>(made.grid.height))},
-               kFromSparsePoints, folder.path(), 100);
+  WritePreview(info, PreviewMap{made.grid, std::vector<uint8_t>(4 * made.grid.size())}, kFromSparsePoints, folder.path(), 100);
   ASSERT_EQ(FindPreviews(folder.path()).size(), 2U);
   EXPECT_EQ(FindPreviews(folder.path())[0].made_from, kFromSparsePoints);
   EXPECT_FALSE(HasOrthophoto(folder.path()));

@@ -72,7 +72,7 @@ void DescribeBuildings(OpenedProject* opened) {
   opened->description["buildings"] = nullptr;
   const std::filesystem::path table = opened->project.BuildingsFile();
   const std::string advice = Command(*opened, "buildings");
-  const auto miss = [&](const std::string& reason, const std::string& help) { Miss(opened, "buildings", reason, help); };
+  const auto miss = [&](const std::string& reason, const std::string& help) { AddMissing(opened, "buildings", reason, help); };
   if (!IsPlainFile(table)) {
     if (IsUnfinished(*opened, "buildings")) {
       miss("they are still being looked for, or that was interrupted", "Wait for it, or go on with `" + advice + "`");

@@ -71,10 +71,10 @@ void DescribeSurface(OpenedProject* opened) {
     reason = "the surface is still being made, or was interrupted";
     advice = "Wait for it, or go on with `" + advice + "`";
   }
-  if (opened->tiles.empty()) Miss(opened, "textured surface", reason, advice);
+  if (opened->tiles.empty()) AddMissing(opened, "textured surface", reason, advice);
   if (!opened->contours) {
-    Miss(opened, "contours", finished ? "the surface was made without maps (surface.maps)" : "they are made together with the surface",
-         finished ? Command(*opened, "surface --restart --set surface.maps=true") : advice);
+    AddMissing(opened, "contours", finished ? "the surface was made without maps (surface.maps)" : "they are made together with the surface",
+               finished ? Command(*opened, "surface --restart --set surface.maps=true") : advice);
   }
 }
 
@@ -84,7 +84,7 @@ void DescribeMaps(OpenedProject* opened) {
   json["terrain"] = json["orthophoto"] = nullptr;
   const std::filesystem::path dsm = opened->project.ProductsFolder() / "dsm.tif";
   if (!Exists(dsm)) {
-    if (opened->tiles.empty()) Miss(opened, "surface model", "there is no orthophoto and no surface model yet", Command(*opened, "render"));
+    if (opened->tiles.empty()) AddMissing(opened, "surface model", "there is no orthophoto and no surface model yet", Command(*opened, "render"));
     return;
   }
   try {
@@ -92,14 +92,14 @@ void DescribeMaps(OpenedProject* opened) {
     opened->terrain = true;
     json["terrain"] = "terrain.bin";
   } catch (const base::InputError& error) {
-    Miss(opened, "surface model", error.what(), Command(*opened, "render") + kRestart);
+    AddMissing(opened, "surface model", error.what(), Command(*opened, "render") + kRestart);
     return;
   }
   opened->orthophoto = Exists(opened->project.ProductsFolder() / "orthophoto.tif");
   if (opened->orthophoto) {
     json["orthophoto"] = "orthophoto.jpg";
   } else {
-    Miss(opened, "orthophoto", "there is no products/orthophoto.tif", Command(*opened, "render"));
+    AddMissing(opened, "orthophoto", "there is no products/orthophoto.tif", Command(*opened, "render"));
   }
 }
 
@@ -144,9 +144,10 @@ void DescribePhotos(OpenedProject* opened, const Json& metrics) {
                         {"available", available}});
     }
     if (gone > 0) {
-      Miss(opened, "pictures of photos",
-           std::to_string(gone) + " of " + std::to_string(survey.photos.size()) + " photos are not in " + survey.photo_root.string() + " any more",
-           "Put them back there, or connect the disk on which they are");
+      AddMissing(
+          opened, "pictures of photos",
+          std::to_string(gone) + " of " + std::to_string(survey.photos.size()) + " photos are not in " + survey.photo_root.string() + " any more",
+          "Put them back there, or connect the disk on which they are");
     }
   }
   opened->description["cameras"] = std::move(cameras);
@@ -159,8 +160,8 @@ void DescribeMetrics(OpenedProject* opened, const JsonFile& file) {
   const Json& metrics = file.json;
   opened->description["metrics"] = nullptr;
   if (!metrics.is_object()) {
-    Miss(opened, "scores", file.damaged ? "report/metrics.json is damaged" : "the held-out photos are not scored yet",
-         Command(*opened, "evaluate") + (file.damaged ? kRestart : ""));
+    AddMissing(opened, "scores", file.damaged ? "report/metrics.json is damaged" : "the held-out photos are not scored yet",
+               Command(*opened, "evaluate") + (file.damaged ? kRestart : ""));
     return;
   }
   Json kept = Json::object();

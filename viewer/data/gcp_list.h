@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/geo/utm.h"
-#include "viewer/data/control_points.h"
+#include "viewer/data/gcp_json.h"
 
 namespace skyquilt::viewer {
 

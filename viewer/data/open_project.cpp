@@ -38,13 +38,13 @@ struct SceneFacts {
 
 std::optional<partition::BlockSet> ReadBlocks(OpenedProject* opened) {
   if (!opening::Exists(opened->project.BlocksFile())) {
-    opening::Miss(opened, "blocks", "the area is not divided into blocks yet", opening::Command(*opened, "partition"));
+    opening::AddMissing(opened, "blocks", "the area is not divided into blocks yet", opening::Command(*opened, "partition"));
     return {};
   }
   try {
     return partition::LoadBlocks(opened->project.BlocksFile());
   } catch (const base::InputError& error) {
-    opening::Miss(opened, "blocks", error.what(), opening::Command(*opened, "partition") + opening::kRestart);
+    opening::AddMissing(opened, "blocks", error.what(), opening::Command(*opened, "partition") + opening::kRestart);
     return {};
   }
 }
@@ -57,8 +57,8 @@ void ReadSurvey(OpenedProject* opened, const OpenedProject* earlier) {
     try {
       opened->survey = std::make_shared<const survey::Survey>(survey::LoadSurvey(opened->project.SurveyFolder()));
     } catch (const base::InputError& error) {
-      opening::Miss(opened, "photos and sparse points", error.what(),
-                    opening::Command(*opened, "prepare PHOTOS -o") + (opened->survey_state.exists ? opening::kRestart : ""));
+      opening::AddMissing(opened, "photos and sparse points", error.what(),
+                          opening::Command(*opened, "prepare PHOTOS -o") + (opened->survey_state.exists ? opening::kRestart : ""));
       return;
     }
   }
@@ -70,13 +70,14 @@ std::optional<SceneFacts> ReadScene(OpenedProject* opened) {
   const std::filesystem::path file = opened->project.SceneFile();
   if (!opening::Exists(file)) {
     if (opening::Exists(opened->project.TrainReport())) {
-      opening::Miss(opened, "exact frames", "the trained blocks are not merged yet", opening::Command(*opened, "merge"));
+      opening::AddMissing(opened, "exact frames", "the trained blocks are not merged yet", opening::Command(*opened, "merge"));
     } else if (opening::IsUnfinished(*opened, "train")) {
-      opening::Miss(opened, "exact frames", "the scene is still being trained, or its training was interrupted",
-                    "Wait for it, or go on with `" + opening::Command(*opened, "train") + "` and then `" + opening::Command(*opened, "merge") + "`");
+      opening::AddMissing(
+          opened, "exact frames", "the scene is still being trained, or its training was interrupted",
+          "Wait for it, or go on with `" + opening::Command(*opened, "train") + "` and then `" + opening::Command(*opened, "merge") + "`");
     } else {
-      opening::Miss(opened, "exact frames", "the scene is not trained yet",
-                    opening::Command(*opened, "train") + "\n" + opening::Command(*opened, "merge"));
+      opening::AddMissing(opened, "exact frames", "the scene is not trained yet",
+                          opening::Command(*opened, "train") + "\n" + opening::Command(*opened, "merge"));
     }
     return {};
   }
@@ -97,8 +98,8 @@ std::optional<SceneFacts> ReadScene(OpenedProject* opened) {
     if (store.HasContext()) facts.parameters += store.ContextParameters();
     return facts;
   } catch (const base::InputError& error) {
-    opening::Miss(opened, "exact frames", std::string("the scene cannot be used: ") + error.what(),
-                  opening::Command(*opened, "merge") + opening::kRestart);
+    opening::AddMissing(opened, "exact frames", std::string("the scene cannot be used: ") + error.what(),
+                        opening::Command(*opened, "merge") + opening::kRestart);
     return {};
   }
 }

@@ -34,7 +34,7 @@ nlohmann::json ListOf(const Eigen::Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
-void Miss(OpenedProject* opened, const std::string& what, const std::string& reason, const std::string& advice) {
+void AddMissing(OpenedProject* opened, const std::string& what, const std::string& reason, const std::string& advice) {
   opened->description["missing"].push_back({{"what", what}, {"reason", reason}, {"advice", advice}});
 }
 

@@ -13,7 +13,7 @@ namespace skyquilt::viewer::opening {
 constexpr const char* kRestart = " --restart";
 
 // Adds to "missing".
-void Miss(OpenedProject* opened, const std::string& what, const std::string& reason, const std::string& advice);
+void AddMissing(OpenedProject* opened, const std::string& what, const std::string& reason, const std::string& advice);
 // "skyquilt <words> <folder of the project>", as a shell takes it.
 std::string Command(const OpenedProject& opened, const std::string& words);
 

@@ -37,14 +37,14 @@ class MadeFiles {
       entries_.splice(entries_.begin(), entries_, entry);
       return entry->second;
     }
-    auto made = std::make_shared<const std::string>(make());
-    entries_.emplace_front(name, made);
-    bytes_ += made->size();
+    auto content = std::make_shared<const std::string>(make());
+    entries_.emplace_front(name, content);
+    bytes_ += content->size();
     while (bytes_ > kCacheBytes) {
       bytes_ -= entries_.back().second->size();
       entries_.pop_back();
     }
-    return made;
+    return content;
   }
   void Clear() {
     entries_.clear();

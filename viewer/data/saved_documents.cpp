@@ -12,8 +12,8 @@
 #include "tour/format/read_tour.h"
 #include "tour/format/write_tour.h"
 #include "viewer/data/check_document.h"
-#include "viewer/data/control_points.h"
 #include "viewer/data/data_replies.h"
+#include "viewer/data/gcp_json.h"
 #include "viewer/data/gcp_list.h"
 
 namespace skyquilt::viewer {

@@ -62,7 +62,7 @@ struct Engine::Impl {
   }
 
   void LookAtFiles(Scheduler& scheduler) {
-    switch (scenes.Look()) {
+    switch (scenes.WhatChanged()) {
       case SceneHolder::Change::kNone:
         break;
       case SceneHolder::Change::kFiles:

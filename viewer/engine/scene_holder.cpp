@@ -73,7 +73,7 @@ std::vector<FileLook> SceneHolder::LookAtData() const {
   return looks;
 }
 
-SceneHolder::Change SceneHolder::Look() const {
+SceneHolder::Change SceneHolder::WhatChanged() const {
   const auto changed = [](const Place& place) { return !place.read || *place.read != LookAt(place.project.SceneFile()); };
   if (changed(main_) || (before_ && changed(*before_))) return Change::kScene;
   return LookAtData() != data_read_ ? Change::kFiles : Change::kNone;

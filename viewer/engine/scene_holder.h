@@ -28,7 +28,7 @@ class SceneHolder : public Renderer {
 
   enum class Change { kNone, kFiles, kScene };
   // Whether files differ from those that were read last; reads none. kFiles: surface or report only.
-  Change Look() const;
+  Change WhatChanged() const;
   // Until Load is called, nothing can be rendered; state() says that a scene is being loaded.
   void Unload();
   // Reads what has changed and raises the revision. What cannot be loaded becomes a reason in state(). Throws base::Interrupted, and base::UsageError

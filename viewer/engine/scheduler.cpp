@@ -43,11 +43,11 @@ std::string ErrorOf(const std::function<void()>& work) {
 Scheduler::Scheduler(Renderer& renderer, FrameEncoder& encoder, QueryMaker make_query, Outbox outbox)
     : renderer_(renderer), encoder_(encoder), make_query_(std::move(make_query)), outbox_(std::move(outbox)) {}
 
-void Scheduler::Tell(ClientId client, std::string text) {
+void Scheduler::Send(ClientId client, std::string text) {
   outbox_.send(client, {.binary = false, .bytes = std::make_shared<const std::string>(std::move(text))});
 }
 
-void Scheduler::TellAll() {
+void Scheduler::SendState() {
   state_.clients = static_cast<int>(clients_.size());
   const auto text = std::make_shared<const std::string>(EngineText(state_));
   for (const auto& [id, client] : clients_) outbox_.send(id, {.binary = false, .bytes = text});
@@ -63,20 +63,20 @@ void Scheduler::SetState(EngineState state, bool new_scene) {
       client.wanted.reset();
       client.gate.Drop();
       client.told_why_not.clear();
-      for (const Question& question : client.questions) Tell(id, ErrorText("the scene has changed in the meantime; ask again", question.id));
+      for (const Question& question : client.questions) Send(id, ErrorText("the scene has changed in the meantime; ask again", question.id));
       client.questions.clear();
     }
   }
-  TellAll();
+  SendState();
 }
 
 void Scheduler::Open(ClientId client) {
   clients_.try_emplace(client);
-  TellAll();
+  SendState();
 }
 
 void Scheduler::Close(ClientId client) {
-  if (clients_.erase(client) > 0) TellAll();
+  if (clients_.erase(client) > 0) SendState();
 }
 
 void Scheduler::Handle(ClientId id, const ClientMessage& message) {
@@ -111,7 +111,7 @@ void Scheduler::Handle(ClientId id, const ClientMessage& message) {
 
 void Scheduler::Show(ClientId id, Client& client, const ViewRequest& view) {
   if (client.last_seq && view.seq <= *client.last_seq) {
-    Tell(id, ErrorText("view: seq must be larger than that of the view before"));
+    Send(id, ErrorText("view: seq must be larger than that of the view before"));
     return;
   }
   client.last_seq = view.seq;
@@ -120,7 +120,7 @@ void Scheduler::Show(ClientId id, Client& client, const ViewRequest& view) {
   client.gate.Drop();
   if (renderer_.Frame(view.project) == nullptr) {
     // Once is enough: a browser may ask again whenever its camera rests.
-    if (client.told_why_not.insert(view.project).second) Tell(id, ErrorText(renderer_.WhyNot(view.project)));
+    if (client.told_why_not.insert(view.project).second) Send(id, ErrorText(renderer_.WhyNot(view.project)));
     return;
   }
   const std::string error = ErrorOf([&] {
@@ -130,14 +130,14 @@ void Scheduler::Show(ClientId id, Client& client, const ViewRequest& view) {
   });
   if (!error.empty()) {
     client.job.reset();
-    Tell(id, ErrorText(error));
+    Send(id, ErrorText(error));
   }
 }
 
 void Scheduler::Ask(ClientId id, Client& client, const ClientMessage& message, uint32_t question_id, Level level) {
   std::erase_if(client.questions, [&](const Question& question) { return question.id == question_id; });
   if (client.questions.size() >= kMaxQuestions) {
-    Tell(id, ErrorText("too many questions at once; wait for the answers to the earlier ones", question_id));
+    Send(id, ErrorText("too many questions at once; wait for the answers to the earlier ones", question_id));
     return;
   }
   const std::string error = ErrorOf([&] {
@@ -145,7 +145,7 @@ void Scheduler::Ask(ClientId id, Client& client, const ClientMessage& message, u
     SKYQUILT_CHECK(question.query != nullptr, "a question without an answer");
     client.questions.push_back(std::move(question));
   });
-  if (!error.empty()) Tell(id, ErrorText(error, question_id));
+  if (!error.empty()) Send(id, ErrorText(error, question_id));
 }
 
 Scheduler::Level Scheduler::LevelOfView(const Client& client) const {
@@ -227,7 +227,7 @@ void Scheduler::RenderView(ClientId id, Client& client) {
   if (error.empty()) return;
   client.job.reset();
   client.wanted.reset();
-  Tell(id, ErrorText(error));
+  Send(id, ErrorText(error));
 }
 
 // Sends the largest pass that is known already, and goes on after it.
@@ -253,7 +253,7 @@ void Scheduler::StepQuestion(ClientId id, Client& client, size_t index) {
     if (done) reply = question.query->Reply();
   });
   if (!error.empty() || done) {
-    Tell(id, error.empty() ? std::move(reply) : ErrorText(error, question.id));
+    Send(id, error.empty() ? std::move(reply) : ErrorText(error, question.id));
     client.questions.erase(client.questions.begin() + static_cast<std::ptrdiff_t>(index));
     return;
   }
@@ -261,7 +261,7 @@ void Scheduler::StepQuestion(ClientId id, Client& client, size_t index) {
   const double fraction = std::clamp(question.query->fraction(), 0.0, 1.0);
   if (fraction < question.told + kProgressStep) return;
   question.told = fraction;
-  Tell(id, ProgressText(question.id, fraction));
+  Send(id, ProgressText(question.id, fraction));
 }
 
 // Takes encoded passes and sends what clients may get. Returns whether anything was sent.
@@ -276,7 +276,7 @@ bool Scheduler::Deliver() {
     const bool wanted = to != clients_.end() && to->second.wanted == encoding.seq;
     if (encoded.bytes == nullptr) {
       base::LogError("view: a frame could not be encoded: {}", encoded.error);
-      if (wanted) Tell(encoding.client, ErrorText(kOurFault));
+      if (wanted) Send(encoding.client, ErrorText(kOurFault));
       continue;
     }
     cache_.Put(encoding.key, encoded.bytes);

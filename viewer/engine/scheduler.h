@@ -79,8 +79,8 @@ class Scheduler {
     uint64_t served = 0;
   };
 
-  void Tell(ClientId client, std::string text);
-  void TellAll();
+  void Send(ClientId client, std::string text);
+  void SendState();
   void Show(ClientId id, Client& client, const ViewRequest& view);
   void Ask(ClientId id, Client& client, const ClientMessage& message, uint32_t question_id, Level level);
   std::array<std::optional<Turn>, kLevels> Turns() const;

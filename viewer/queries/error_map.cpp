@@ -11,7 +11,7 @@
 #include "core/scene/camera_rays.h"
 #include "viewer/protocol/replies.h"
 #include "viewer/queries/field_rays.h"
-#include "viewer/queries/ground_grid.h"
+#include "viewer/queries/mean_map.h"
 #include "viewer/queries/photo_reader.h"
 
 namespace skyquilt::viewer {
@@ -48,7 +48,7 @@ class ErrorMapQuery : public Query {
   }
 
   bool Step(const FieldAccess& access) override {
-    if (!grid_) Plan(access);
+    if (!map_) Plan(access);
     if (!comparison_) {
       if (next_ == photos_.size()) {
         Finish();
@@ -98,7 +98,7 @@ class ErrorMapQuery : public Query {
       const camera::Camera& camera = survey_->cameras.at(static_cast<size_t>(PhotoAt(i).camera));
       reduction = std::max(reduction, static_cast<double>(camera.width) / kPhotoWidth);
     }
-    grid_.emplace(low, high, reduction * GsdOf(access));
+    map_.emplace(low, high, reduction * GsdOf(access));
   }
 
   void Begin(SmallPhoto photo) {
@@ -135,7 +135,7 @@ class ErrorMapQuery : public Query {
         const double shown = std::clamp(static_cast<double>(colors[i].rgb_srgb[channel]), 0.0, 1.0);
         error += std::abs(shown - taken[channel] / 255.0) / 3.0;
       }
-      if (std::isfinite(error)) grid_->Add(point.head<2>(), error);
+      if (std::isfinite(error)) map_->Add(point.head<2>(), error);
     }
     c.done += count;
     if (c.done == c.pixels.size()) comparison_.reset();
@@ -145,11 +145,11 @@ class ErrorMapQuery : public Query {
     if (result_.photos == 0) {
       throw BadMessage("none of the " + std::to_string(photos_.size()) + " held-out photos can be read: " + problem_);
     }
-    if (grid_->Empty()) throw BadMessage("the held-out photos show no surface of this scene");
-    result_.min_enu = grid_->min_enu();
-    result_.max_enu = grid_->max_enu();
-    result_.scale = std::max(kSmallestScale, grid_->Quantile(kScaleShare));
-    result_.url = publish_(grid_->Picture(result_.scale));
+    if (map_->Empty()) throw BadMessage("the held-out photos show no surface of this scene");
+    result_.min_enu = map_->grid().origin;
+    result_.max_enu = map_->grid().max();
+    result_.scale = std::max(kSmallestScale, map_->Quantile(kScaleShare));
+    result_.url = publish_(map_->Picture(result_.scale));
   }
 
   const ErrorMapRequest request_;
@@ -160,7 +160,7 @@ class ErrorMapQuery : public Query {
   size_t next_ = 0;          // of photos_: the one that is being read
   std::shared_ptr<PhotoToRead> reading_;
   std::optional<Comparison> comparison_;
-  std::optional<GroundGrid> grid_;
+  std::optional<MeanMap> map_;
   std::string problem_;  // the first
   ErrorMapResult result_;
 };

@@ -32,13 +32,11 @@ scene::HeightMap SurfaceOfPoints(const survey::Survey& survey) {
   }
   const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
   const double cell_m = std::max(std::sqrt(kPointsPerCell * size.prod() / static_cast<double>(survey.points.size())), size.maxCoeff() / kMostCells);
-  const int columns = static_cast<int>(size.x() / cell_m) + 1, rows = static_cast<int>(size.y() / cell_m) + 1;
-  std::vector<std::vector<double>> in_cell(static_cast<size_t>(columns) * static_cast<size_t>(rows));
+  const geo::PlaneGrid grid(low, cell_m, size);
+  std::vector<std::vector<double>> in_cell(grid.size());
   for (const survey::SparsePoint& point : survey.points) {
-    const Eigen::Vector2d at = (point.x_in_enu.head<2>() - low) / cell_m;
-    if (!(at.minCoeff() >= 0.0 && at.x() < columns && at.y() < rows)) continue;
-    const int x = static_cast<int>(at.x()), y = static_cast<int>(at.y());
-    in_cell[static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x)].push_back(point.x_in_enu.z());
+    const int64_t cell = grid.CellAt(point.x_in_enu.head<2>());
+    if (cell >= 0) in_cell[static_cast<size_t>(cell)].push_back(point.x_in_enu.z());
   }
   std::vector<double> heights(in_cell.size(), 0.0), known(in_cell.size(), 0.0);
   for (size_t i = 0; i < in_cell.size(); ++i) {
@@ -47,8 +45,8 @@ scene::HeightMap SurfaceOfPoints(const survey::Survey& survey) {
     heights[i] = base::UpperMedian(z);
     known[i] = 1.0;
   }
-  scene::FillFromSurroundings(columns, rows, 1, &heights, std::move(known));
-  return {low.x(), low.y(), cell_m, columns, rows, std::move(heights)};
+  scene::FillFromSurroundings(grid, 1, &heights, std::move(known));
+  return {grid, std::move(heights)};
 }
 
 }  // namespace skyquilt::worker

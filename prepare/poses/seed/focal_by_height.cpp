@@ -11,7 +11,7 @@
 
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
-#include "prepare/bundle/lens.h"
+#include "prepare/bundle/adjusted_lens.h"
 #include "prepare/poses/seed/seed_survey.h"
 
 namespace skyquilt::prepare::poses {

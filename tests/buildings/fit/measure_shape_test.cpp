@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "buildings/fit/fit_parameters.h"
 #include "buildings/fit/fit_shape.h"
-#include "buildings/fit/parameters.h"
 #include "buildings/fit/roof_pieces.h"
 #include "core/base/random.h"
 #include "tests/buildings/fit/made_surface.h"

@@ -2,7 +2,7 @@
 
 #include "buildings/pictures/building_pictures.h"
 #include "core/base/random.h"
-#include "tests/buildings/pictures/made_photos.h"
+#include "tests/buildings/pictures/made_cameras.h"
 #include "tests/buildings/sample_buildings.h"
 
 namespace skyquilt::buildings {

@@ -7,7 +7,7 @@
 #include "buildings/pictures/building_pictures.h"
 #include "buildings/pictures/line_layer.h"
 #include "buildings/pictures/model_view.h"
-#include "tests/buildings/pictures/made_photos.h"
+#include "tests/buildings/pictures/made_cameras.h"
 #include "tests/buildings/sample_buildings.h"
 
 namespace skyquilt::buildings {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "coordinator/poses/task_message.h"
-#include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/rank_messages.h"
 #include "core/base/cancel.h"
 #include "core/base/file.h"
 #include "tests/coordinator/scheduler/fake_ranks.h"

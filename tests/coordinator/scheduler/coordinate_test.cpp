@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/rank_messages.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/random.h"

@@ -6,10 +6,10 @@
 
 #include "core/base/errors.h"
 #include "core/gis/contours.h"
-#include "core/gis/crs.h"
 #include "core/gis/geotiff.h"
 #include "core/gis/read_maps.h"
 #include "core/gis/vector_layers.h"
+#include "core/gis/zone_wkt.h"
 #include "tests/core/gis/open_dataset.h"
 #include "tests/support/temporary_folder.h"
 

@@ -19,7 +19,7 @@ HeightMap Slope() {
   for (int row = 0; row < 10; ++row) {
     for (int column = 0; column < 20; ++column) heights.push_back(10.0 + (column + 0.5) * 2.0 / 4.0);
   }
-  return {0.0, 0.0, 2.0, 20, 10, heights};
+  return {{{0.0, 0.0}, 2.0, 20, 10}, heights};
 }
 
 RC_GTEST_PROP(HeightMap, IsExactOnASlopeAndLevelBeyondIt, ()) {
@@ -38,9 +38,9 @@ TEST(HeightMap, IsMetByRaysThatGoDown) {
 }
 
 TEST(HeightMap, RefusesNumbersThatDoNotFit) {
-  EXPECT_THROW(HeightMap(0.0, 0.0, 1.0, 2, 2, {1.0}), std::invalid_argument);
-  EXPECT_THROW(HeightMap(0.0, 0.0, 0.0, 1, 1, {1.0}), std::invalid_argument);
-  EXPECT_THROW(HeightMap(0.0, 0.0, std::nan(""), 1, 1, {1.0}), std::invalid_argument);
+  EXPECT_THROW(HeightMap({{0.0, 0.0}, 1.0, 2, 2}, {1.0}), std::invalid_argument);
+  EXPECT_THROW(HeightMap({{0.0, 0.0}, 0.0, 1, 1}, {1.0}), std::invalid_argument);
+  EXPECT_THROW(HeightMap({{0.0, 0.0}, std::nan(""), 1, 1}, {1.0}), std::invalid_argument);
 }
 
 RC_GTEST_PROP(FillFromSurroundings, KeepsWhatIsKnownAndStaysBetweenIt, ()) {
@@ -56,7 +56,7 @@ RC_GTEST_PROP(FillFromSurroundings, KeepsWhatIsKnownAndStaysBetweenIt, ()) {
     values[2 * i + 1] = 7.0;
   }
   const std::vector<double> before = values;
-  FillFromSurroundings(columns, rows, 2, &values, weights);
+  FillFromSurroundings({columns, rows}, 2, &values, weights);
   for (size_t i = 0; i < cells && any; ++i) {
     if (weights[i] > 0.0) RC_ASSERT(values[2 * i] == before[2 * i]);
     RC_ASSERT(values[2 * i] >= -3.0 - 1e-9 && values[2 * i] <= 3.0 + 1e-9);
@@ -71,7 +71,7 @@ TEST(FillFromSurroundings, PrefersTheNearest) {
   weights[0] = 1.0;
   values[63] = 5.0;
   weights[63] = 1.0;
-  FillFromSurroundings(64, 1, 1, &values, weights);
+  FillFromSurroundings({64, 1}, 1, &values, weights);
   EXPECT_LT(values[5], 2.0);
   EXPECT_GT(values[58], 4.0);
 }

@@ -78,7 +78,7 @@ class ScaleWarning : public ::testing::Test {
     }
     testing::internal::CaptureStderr();
     base::InitLog(false);
-    check.Look(rays, colors);
+    check.Check(rays, colors);
     return testing::internal::GetCapturedStderr();
   }
   static bool Warns(const std::string& logged) { return logged.find("warning") != std::string::npos; }
@@ -121,7 +121,7 @@ TEST_F(ScaleWarning, IgnoresLinesAndRaysThatMeetNothing) {
   ScaleCheck check(trained_);
   EXPECT_EQ(Logged(check, 0.0, 50), "");
   EXPECT_EQ(Logged(check, 100.0, 50, 0, std::nanf("")), "");
-  check.Look({}, {});
+  check.Check({}, {});
   EXPECT_TRUE(Warns(Logged(check, 100.0, 50)));
 }
 

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surface/maps/height_raster.h"
+
 namespace skyquilt::surface {
 namespace {
 
 TEST(FillSmoothly, PlanesAndValuesStay) {
-  FloatGrid grid(97, 64);
+  base::Grid<float> grid(97, 64, kNoHeight);
   const auto plane = [](int column, int row) { return static_cast<float>(5000.0 + 0.11 * column - 0.07 * row); };
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
@@ -25,7 +27,7 @@ TEST(FillSmoothly, PlanesAndValuesStay) {
 
 TEST(FillSmoothly, FollowsHarmonicSurfacesThroughGaps) {
   // x^2 - y^2 is harmonic, so the gap must be filled with it.
-  FloatGrid grid(120, 120);
+  base::Grid<float> grid(120, 120, kNoHeight);
   const auto saddle = [](int column, int row) {
     const double x = (column - 60) / 20.0, y = (row - 60) / 20.0;
     return static_cast<float>(x * x - y * y);
@@ -43,7 +45,7 @@ TEST(FillSmoothly, FollowsHarmonicSurfacesThroughGaps) {
 }
 
 TEST(FillSmoothly, StaysBetweenTheValuesOfALevelEdge) {
-  FloatGrid grid(50, 30);
+  base::Grid<float> grid(50, 30, kNoHeight);
   for (int column = 0; column < 50; ++column) {
     grid.value[grid.Index(column, 0)] = 2.0F;
     grid.value[grid.Index(column, 29)] = 2.0F;
@@ -58,15 +60,15 @@ TEST(FillSmoothly, StaysBetweenTheValuesOfALevelEdge) {
 }
 
 TEST(FillSmoothly, NothingOneValueOneCell) {
-  FloatGrid empty(7, 5);
+  base::Grid<float> empty(7, 5, kNoHeight);
   FillSmoothly(&empty);
   EXPECT_TRUE(std::all_of(empty.value.begin(), empty.value.end(), [](float value) { return std::isnan(value); }));
-  FloatGrid none;
+  base::Grid<float> none;
   FillSmoothly(&none);
-  FloatGrid one(1, 1);
+  base::Grid<float> one(1, 1, kNoHeight);
   FillSmoothly(&one);
   EXPECT_TRUE(std::isnan(one.value[0]));
-  FloatGrid single(13, 1);
+  base::Grid<float> single(13, 1, kNoHeight);
   single.value[4] = 7.5F;
   FillSmoothly(&single);
   for (const float value : single.value) EXPECT_NEAR(value, 7.5F, 1e-4F);

@@ -122,7 +122,7 @@ TEST(SurfaceRaster, LiesInTheZoneOfTheSurvey) {
       const geo::Geodetic place = enu.GeodeticFromEnu({x, y, z});
       const Eigen::Vector2d cell = grid.CellOf(geo::UtmFromGeodetic(place, grid.zone));
       const auto column = static_cast<int>(std::lround(cell.x())), row = static_cast<int>(std::lround(cell.y()));
-      EXPECT_NEAR(raster.height_m[static_cast<size_t>(row) * static_cast<size_t>(grid.width) + static_cast<size_t>(column)], place.height_m, 0.01);
+      EXPECT_NEAR(raster.height_m[grid.Index(column, row)], place.height_m, 0.01);
       ++checked;
     }
   }

@@ -6,7 +6,7 @@
 
 #include "core/base/errors.h"
 #include "surface/views/view_rendering.h"
-#include "tests/surface/views/analytic_scene.h"
+#include "tests/surface/views/analytic_survey.h"
 
 namespace skyquilt::surface {
 namespace {

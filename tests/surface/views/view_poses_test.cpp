@@ -7,7 +7,7 @@
 
 #include "core/base/errors.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/surface/views/analytic_scene.h"
+#include "tests/surface/views/analytic_survey.h"
 
 namespace skyquilt::surface {
 namespace {

@@ -14,7 +14,7 @@
 #include "core/image/srgb.h"
 #include "tests/core/gis/limited_file_size.h"
 #include "tests/support/error_of.h"
-#include "tests/tour/export/sample_project.h"
+#include "tests/tour/export/sample_tour_project.h"
 #include "tour/export/tour_video.h"
 
 namespace skyquilt::tour {

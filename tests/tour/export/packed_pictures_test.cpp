@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/tour/export/sample_project.h"
+#include "tests/tour/export/sample_tour_project.h"
 #include "tour/pictures/make_pictures.h"
 
 namespace skyquilt::tour {

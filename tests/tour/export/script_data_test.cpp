@@ -4,7 +4,7 @@
 
 #include "core/base/errors.h"
 #include "tests/core/gis/limited_file_size.h"
-#include "tests/tour/export/sample_project.h"
+#include "tests/tour/export/sample_tour_project.h"
 
 namespace skyquilt::tour {
 namespace {

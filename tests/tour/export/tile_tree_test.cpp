@@ -6,7 +6,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/json_text.h"
-#include "tests/tour/export/sample_project.h"
+#include "tests/tour/export/sample_tour_project.h"
 #include "tour/export/script_data.h"
 
 namespace skyquilt::tour {

@@ -8,7 +8,7 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "tests/tour/pictures/fields.h"
+#include "tests/tour/pictures/sample_fields.h"
 #include "tour/pictures/estimate_seconds.h"
 #include "tour/pictures/picture_file.h"
 

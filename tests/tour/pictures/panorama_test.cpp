@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "products/camera_path.h"
-#include "tests/tour/pictures/fields.h"
+#include "tests/tour/pictures/sample_fields.h"
 #include "tour/pictures/picture_file.h"
 #include "tour/pictures/render_picture.h"
 

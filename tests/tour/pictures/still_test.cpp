@@ -7,7 +7,7 @@
 #include "core/base/file.h"
 #include "products/camera_path.h"
 #include "products/render_views.h"
-#include "tests/tour/pictures/fields.h"
+#include "tests/tour/pictures/sample_fields.h"
 #include "tour/pictures/make_pictures.h"
 #include "tour/pictures/picture_file.h"
 

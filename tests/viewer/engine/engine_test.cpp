@@ -175,9 +175,9 @@ TEST(SceneHolder, TheEarlierSceneIsPlacedByItsOrigin) {
   input.before = before;
   SceneHolder scenes(input, data);
   EXPECT_FALSE(scenes.state().ready);
-  EXPECT_EQ(scenes.Look(), SceneHolder::Change::kScene);
+  EXPECT_EQ(scenes.WhatChanged(), SceneHolder::Change::kScene);
   scenes.Load();
-  EXPECT_EQ(scenes.Look(), SceneHolder::Change::kNone);
+  EXPECT_EQ(scenes.WhatChanged(), SceneHolder::Change::kNone);
   EXPECT_TRUE(scenes.state().ready);
   EXPECT_EQ(scenes.state().reason, "");
   const FieldAccess access = scenes.Access();
@@ -192,15 +192,15 @@ TEST(SceneHolder, TheEarlierSceneIsPlacedByItsOrigin) {
   // A file of the report: the scene stays.
   std::filesystem::create_directories(project.ReportFolder());
   base::WriteFileAtomically(project.MetricsFile(), "{}");
-  EXPECT_EQ(scenes.Look(), SceneHolder::Change::kFiles);
+  EXPECT_EQ(scenes.WhatChanged(), SceneHolder::Change::kFiles);
   const uint32_t revision = scenes.state().revision;
   scenes.ReloadData();
-  EXPECT_EQ(scenes.Look(), SceneHolder::Change::kNone);
+  EXPECT_EQ(scenes.WhatChanged(), SceneHolder::Change::kNone);
   EXPECT_GT(scenes.state().revision, revision);
 
   // The earlier scene becomes one without a place.
   WriteWholeScene(before.SceneFile(), {.georeferenced = false});
-  EXPECT_EQ(scenes.Look(), SceneHolder::Change::kScene);
+  EXPECT_EQ(scenes.WhatChanged(), SceneHolder::Change::kScene);
   scenes.Unload();
   EXPECT_EQ(scenes.Frame(Which::kMain), nullptr);
   scenes.Load();

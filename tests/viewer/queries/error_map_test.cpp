@@ -8,7 +8,7 @@
 #include "products/camera_path.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/viewer/queries/analytic_field.h"
-#include "viewer/queries/ground_grid.h"
+#include "viewer/queries/mean_map.h"
 
 namespace skyquilt::viewer {
 namespace {
@@ -173,20 +173,20 @@ TEST_F(ErrorMapTest, CanBeGivenUpAtAnyTime) {
   }
 }
 
-TEST(GroundGrid, AveragesAndIgnoresWhatIsOutside) {
-  GroundGrid grid({0, 0}, {10, 5}, 1.0);
-  EXPECT_EQ(grid.width(), 10);
-  EXPECT_EQ(grid.height(), 5);
-  EXPECT_TRUE(grid.Empty());
+TEST(MeanMap, AveragesAndIgnoresWhatIsOutside) {
+  MeanMap map({0, 0}, {10, 5}, 1.0);
+  EXPECT_EQ(map.grid().columns, 10);
+  EXPECT_EQ(map.grid().rows, 5);
+  EXPECT_TRUE(map.Empty());
   for (const Eigen::Vector2d& place : {Eigen::Vector2d(-0.1, 1), Eigen::Vector2d(10.1, 1), Eigen::Vector2d(1, 5.1), Eigen::Vector2d(std::nan(""), 1)})
-    grid.Add(place, 1.0);
-  EXPECT_TRUE(grid.Empty());
-  grid.Add({0.5, 0.5}, 1.0);
-  grid.Add({0.6, 0.4}, 3.0);
-  EXPECT_EQ(grid.Quantile(1.0), 2.0);
-  for (int i = 1; i < 10; ++i) grid.Add({i + 0.5, 0.5}, 0.1 * i);
-  EXPECT_EQ(grid.Quantile(0.9), 0.9);
-  EXPECT_EQ(grid.Quantile(0.95), 2.0);
+    map.Add(place, 1.0);
+  EXPECT_TRUE(map.Empty());
+  map.Add({0.5, 0.5}, 1.0);
+  map.Add({0.6, 0.4}, 3.0);
+  EXPECT_EQ(map.Quantile(1.0), 2.0);
+  for (int i = 1; i < 10; ++i) map.Add({i + 0.5, 0.5}, 0.1 * i);
+  EXPECT_EQ(map.Quantile(0.9), 0.9);
+  EXPECT_EQ(map.Quantile(0.95), 2.0);
 }
 
 TEST(EncodePng, KeepsAllChannels) {

@@ -7,7 +7,7 @@
 
 #include "core/base/errors.h"
 #include "prepare/control/reading/read_control.h"
-#include "tests/prepare/control/reading/made_control.h"
+#include "tests/prepare/control/reading/made_control_files.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 

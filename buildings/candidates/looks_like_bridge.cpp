@@ -1,4 +1,4 @@
-#include "buildings/candidates/bridge.h"
+#include "buildings/candidates/looks_like_bridge.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,8 +72,6 @@ class Deck {
   }
 
  private:
-  Eigen::Vector2d CentreOf(int column, int row) const { return area_.origin + area_.cell_m * Eigen::Vector2d(column + 0.5, row + 0.5); }
-
   // Area over length: the mean width of a deck that need not be straight.
   double WidthAcross(const Eigen::Vector2d& along) const {
     double least = std::numeric_limits<double>::infinity(), most = -least, cells = 0.0;
@@ -108,12 +106,12 @@ class Deck {
             const double z = top_.TopAt(c + left_, r + low_);
             if (std::isnan(z)) continue;
             ++seen;
-            if (std::abs(z - roof) <= kLevelStep_m && z - ground_.At(CentreOf(c, r)) < min_height_m_) ++level;
+            if (std::abs(z - roof) <= kLevelStep_m && z - ground_.At(area_.Centre(c, r)) < min_height_m_) ++level;
           }
         }
         if (out.isZero()) continue;
         const bool continues = 2 * level > seen;
-        if (continues || edge_.DistanceTo(CentreOf(column, row)) <= kEndAtEdge_m) open.push_back({out.normalized(), continues});
+        if (continues || edge_.DistanceTo(area_.Centre(column, row)) <= kEndAtEdge_m) open.push_back({out.normalized(), continues});
       }
     }
     return open;

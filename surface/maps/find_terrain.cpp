@@ -1,4 +1,4 @@
-#include "surface/maps/terrain.h"
+#include "surface/maps/find_terrain.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,6 @@
 #include "core/base/order_statistics.h"
 #include "core/base/progress.h"
 #include "surface/maps/fill_smoothly.h"
-#include "surface/maps/float_grid.h"
 #include "surface/maps/low_outliers.h"
 #include "surface/maps/window_filter.h"
 
@@ -39,9 +38,8 @@ WorkingCells PlanWorkingCells(const gis::MapGrid& grid, double cell_m) {
   return cells;
 }
 
-FloatGrid LowHeights(const HeightRaster& surface, const WorkingCells& cells) {
-  FloatGrid low(cells.columns, cells.rows);
-  const auto width = static_cast<size_t>(surface.grid.width);
+base::Grid<float> LowHeights(const HeightRaster& surface, const WorkingCells& cells) {
+  base::Grid<float> low(cells.columns, cells.rows, kNoHeight);
   std::vector<float> inside;
   for (int row = 0; row < cells.rows; ++row) {
     const int last_y = std::min((row + 1) * cells.factor, surface.grid.height);
@@ -50,7 +48,7 @@ FloatGrid LowHeights(const HeightRaster& surface, const WorkingCells& cells) {
       inside.clear();
       for (int y = row * cells.factor; y < last_y; ++y) {
         for (int x = column * cells.factor; x < last_x; ++x) {
-          const float height = surface.height_m[static_cast<size_t>(y) * width + static_cast<size_t>(x)];
+          const float height = surface.height_m[surface.grid.Index(x, y)];
           if (std::isfinite(height)) inside.push_back(height);
         }
       }
@@ -77,15 +75,15 @@ std::vector<int> WindowHalves(const TerrainOptions& options, double cell_m, int 
 }
 
 // Removes the cells of what stands on the ground.
-void KeepGround(const TerrainOptions& options, double cell_m, FloatGrid* low, base::Progress* progress) {
-  FloatGrid opened = *low;
+void KeepGround(const TerrainOptions& options, double cell_m, base::Grid<float>* low, base::Progress* progress) {
+  base::Grid<float> opened = *low;
   int previous = 0;
   const std::vector<int> halves = WindowHalves(options, cell_m, std::max(low->columns, low->rows));
   for (size_t step = 0; step < halves.size(); ++step) {
     base::ThrowIfCancelled();
     const double growth_m = 2.0 * (halves[step] - previous) * cell_m;
     const auto threshold = static_cast<float>(std::min(options.high_m, options.low_m + options.slope * growth_m));
-    const FloatGrid next = Opening(opened, halves[step]);
+    const base::Grid<float> next = Opening(opened, halves[step]);
     for (size_t i = 0; i < next.value.size(); ++i) {
       if (opened.value[i] - next.value[i] > threshold) low->value[i] = kNoHeight;
     }
@@ -98,7 +96,7 @@ void KeepGround(const TerrainOptions& options, double cell_m, FloatGrid* low, ba
 // Interpolates heights of working cells linearly at the cells of the surface; outside the outermost centres it goes on straight.
 class Upsampled {
  public:
-  Upsampled(const FloatGrid& coarse, const WorkingCells& cells, int width) : coarse_(coarse), factor_(cells.factor) {
+  Upsampled(const base::Grid<float>& coarse, const WorkingCells& cells, int width) : coarse_(coarse), factor_(cells.factor) {
     for (int x = 0; x < width; ++x) columns_.push_back(Around(x, coarse.columns));
   }
   void Row(int y, std::vector<float>* heights) const {
@@ -125,14 +123,14 @@ class Upsampled {
     const int first = std::clamp(static_cast<int>(std::floor(position)), 0, count - 2);
     return {first, first + 1, static_cast<float>(position - first)};
   }
-  const FloatGrid& coarse_;
+  const base::Grid<float>& coarse_;
   int factor_;
   std::vector<Pair> columns_;
 };
 
 // Per working cell, how far the surface may be from the terrain to be ground: low_m and what the ground rises in a working cell.
-FloatGrid Tolerance(const FloatGrid& terrain, double cell_m, const TerrainOptions& options) {
-  FloatGrid tolerance(terrain.columns, terrain.rows);
+base::Grid<float> Tolerance(const base::Grid<float>& terrain, double cell_m, const TerrainOptions& options) {
+  base::Grid<float> tolerance(terrain.columns, terrain.rows);
   const double most = options.slope * cell_m;
   for (int row = 0; row < terrain.rows; ++row) {
     const int north = std::max(0, row - 1), south = std::min(terrain.rows - 1, row + 1);
@@ -147,10 +145,11 @@ FloatGrid Tolerance(const FloatGrid& terrain, double cell_m, const TerrainOption
 }
 
 // Per cell of the surface: 1 where it is ground.
-std::vector<uint8_t> GroundMask(const HeightRaster& surface, const WorkingCells& cells, const FloatGrid& terrain, const TerrainOptions& options) {
+std::vector<uint8_t> GroundMask(const HeightRaster& surface, const WorkingCells& cells, const base::Grid<float>& terrain,
+                                const TerrainOptions& options) {
   std::vector<uint8_t> ground(surface.height_m.size(), 0);
   const Upsampled upsampled(terrain, cells, surface.grid.width);
-  const FloatGrid tolerance = Tolerance(terrain, cells.cell_m, options);
+  const base::Grid<float> tolerance = Tolerance(terrain, cells.cell_m, options);
   std::vector<float> heights;
   size_t cell = 0;
   for (int y = 0; y < surface.grid.height; ++y) {
@@ -165,8 +164,8 @@ std::vector<uint8_t> GroundMask(const HeightRaster& surface, const WorkingCells&
 }
 
 // Mean height of the ground in each working cell: unlike the low heights, not moved by noise.
-FloatGrid GroundMeans(const HeightRaster& surface, const std::vector<uint8_t>& ground, const WorkingCells& cells) {
-  FloatGrid means(cells.columns, cells.rows);
+base::Grid<float> GroundMeans(const HeightRaster& surface, const std::vector<uint8_t>& ground, const WorkingCells& cells) {
+  base::Grid<float> means(cells.columns, cells.rows, kNoHeight);
   const auto n = static_cast<size_t>(cells.columns);
   std::vector<double> sum(n);
   std::vector<int> count(n), all(n);
@@ -194,10 +193,10 @@ FloatGrid GroundMeans(const HeightRaster& surface, const std::vector<uint8_t>& g
 }
 
 // 1 for working cells inside the outline of the data, closed over gaps.
-std::vector<uint8_t> ClosedOutline(const FloatGrid& data, double window_m, double cell_m) {
+std::vector<uint8_t> ClosedOutline(const base::Grid<float>& data, double window_m, double cell_m) {
   const int half = HalfWindow(window_m, cell_m, std::max(data.columns, data.rows));
   // With a border as wide as the window reaches, so that the outline is not drawn to the grid's edge.
-  FloatGrid padded(data.columns + 2 * half, data.rows + 2 * half, 0.0F);
+  base::Grid<float> padded(data.columns + 2 * half, data.rows + 2 * half, 0.0F);
   for (int row = 0; row < data.rows; ++row) {
     for (int column = 0; column < data.columns; ++column) {
       if (!std::isnan(data.At(column, row))) padded.value[padded.Index(column + half, row + half)] = 1.0F;
@@ -214,13 +213,13 @@ std::vector<uint8_t> ClosedOutline(const FloatGrid& data, double window_m, doubl
 }
 
 // Terrain of the working cells plus the smoothed detail of the surface where it is ground, which fades out at the edge of the ground.
-void Compose(const HeightRaster& surface, const WorkingCells& cells, const FloatGrid& coarse, const std::vector<uint8_t>& outline, Terrain* terrain) {
+void Compose(const HeightRaster& surface, const WorkingCells& cells, const base::Grid<float>& coarse, const std::vector<uint8_t>& outline,
+             Terrain* terrain) {
   constexpr int kReach = static_cast<int>(kSmoothing.size()) / 2;
   const int width = surface.grid.width, height = surface.grid.height;
   const Upsampled upsampled(coarse, cells, width);
   std::array<std::vector<float>, kSmoothing.size()> smoothed_rows;  // detail smoothed along rows; row y is at y modulo their number
   std::vector<float> base_heights, detail;
-  const auto index = [&](int x, int y) { return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x); };
   const auto smooth_row = [&](int y, std::vector<float>* row) {
     row->assign(static_cast<size_t>(width), 0.0F);
     if (y < 0 || y >= height) return;
@@ -228,7 +227,7 @@ void Compose(const HeightRaster& surface, const WorkingCells& cells, const Float
     detail.assign(static_cast<size_t>(width) + 2 * kReach, 0.0F);
     for (int x = 0; x < width; ++x) {
       const auto i = static_cast<size_t>(x);
-      if (terrain->is_ground[index(x, y)] != 0) detail[i + kReach] = surface.height_m[index(x, y)] - base_heights[i];
+      if (terrain->is_ground[surface.grid.Index(x, y)] != 0) detail[i + kReach] = surface.height_m[surface.grid.Index(x, y)] - base_heights[i];
     }
     for (size_t x = 0; x < row->size(); ++x) {
       for (size_t k = 0; k < kSmoothing.size(); ++k) (*row)[x] += kSmoothing[k] * detail[x + k];
@@ -244,7 +243,7 @@ void Compose(const HeightRaster& surface, const WorkingCells& cells, const Float
       if (outline[coarse.Index(x / cells.factor, y / cells.factor)] == 0) continue;
       float sum = base_heights[static_cast<size_t>(x)];
       for (int k = -kReach; k <= kReach; ++k) sum += kSmoothing[static_cast<size_t>(k + kReach)] * smoothed_rows[slot(y + k)][static_cast<size_t>(x)];
-      terrain->height.height_m[index(x, y)] = sum;
+      terrain->height.height_m[surface.grid.Index(x, y)] = sum;
     }
   }
 }
@@ -253,8 +252,7 @@ void Compose(const HeightRaster& surface, const WorkingCells& cells, const Float
 
 Terrain FindTerrain(const HeightRaster& surface, const TerrainOptions& options) {
   const gis::MapGrid& grid = surface.grid;
-  SKYQUILT_CHECK(surface.height_m.size() == static_cast<size_t>(grid.width) * static_cast<size_t>(grid.height),
-                 std::to_string(surface.height_m.size()));
+  SKYQUILT_CHECK(surface.height_m.size() == grid.size(), std::to_string(surface.height_m.size()));
   SKYQUILT_CHECK(options.cell_m > 0.0 && options.window_m > 0.0 && options.slope >= 0.0, "options of the terrain");
   Terrain terrain;
   terrain.height = {grid, std::vector<float>(surface.height_m.size(), kNoHeight)};
@@ -262,17 +260,17 @@ Terrain FindTerrain(const HeightRaster& surface, const TerrainOptions& options) 
   if (surface.height_m.empty()) return terrain;
   base::Progress progress("ground", 1.0, "parts");
   const WorkingCells cells = PlanWorkingCells(grid, options.cell_m);
-  FloatGrid low = LowHeights(surface, cells);
+  base::Grid<float> low = LowHeights(surface, cells);
   if (std::all_of(low.value.begin(), low.value.end(), [](float value) { return std::isnan(value); })) return terrain;
   const std::vector<uint8_t> outline = ClosedOutline(low, options.window_m, cells.cell_m);
   const int64_t pits = RemoveLowOutliers(&low, cells.cell_m, options.low_m);
   if (pits > 0) base::LogDebug("{} working cells of the surface are pits below the ground and are left out", pits);
   KeepGround(options, cells.cell_m, &low, &progress);
   FillSmoothly(&low);
-  FloatGrid means = GroundMeans(surface, GroundMask(surface, cells, low, options), cells);
+  base::Grid<float> means = GroundMeans(surface, GroundMask(surface, cells, low, options), cells);
   FillSmoothly(&means);
   // Without any ground near the first estimate, that one is the best there is.
-  const FloatGrid& coarse = std::isnan(means.value.front()) ? low : means;
+  const base::Grid<float>& coarse = std::isnan(means.value.front()) ? low : means;
   terrain.is_ground = GroundMask(surface, cells, coarse, options);
   Compose(surface, cells, coarse, outline, &terrain);
   progress.Finish();

@@ -1,4 +1,4 @@
-#include "simulate/building.h"
+#include "simulate/simulated_building.h"
 
 #include <algorithm>
 #include <array>

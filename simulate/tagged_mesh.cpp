@@ -1,4 +1,4 @@
-#include "simulate/mesh.h"
+#include "simulate/tagged_mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -82,14 +82,14 @@ void Mesh::AddBox(const Vector3f& centre_bottom, const Vector3f& half, float hei
 
 const Mesh& Mesh::UnitSphere(int subdivisions) {
   static const std::array<Mesh, 4> spheres = [] {
-    std::array<Mesh, 4> made;
+    std::array<Mesh, 4> levels;
     Shape shape = Icosahedron();
-    for (Mesh& mesh : made) {
+    for (Mesh& mesh : levels) {
       mesh.position = shape.position;
       mesh.triangle = shape.triangle;
       shape = Subdivide(shape);
     }
-    return made;
+    return levels;
   }();
   return spheres[static_cast<size_t>(std::clamp(subdivisions, 0, 3))];
 }

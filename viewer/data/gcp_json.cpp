@@ -1,4 +1,4 @@
-#include "viewer/data/control_points.h"
+#include "viewer/data/gcp_json.h"
 
 #include <nlohmann/json.hpp>
 

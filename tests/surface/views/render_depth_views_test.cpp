@@ -1,4 +1,4 @@
-#include "surface/views/render_views.h"
+#include "surface/views/render_depth_views.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "core/base/progress.h"
 #include "surface/views/view_files.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/surface/views/analytic_scene.h"
+#include "tests/surface/views/analytic_survey.h"
 
 namespace skyquilt::surface {
 namespace {

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "core/geo/plane_grid.h"
+
 namespace skyquilt::viewer {
 
-class GroundGrid {
+class MeanMap {
  public:
   // Square cells of at least finest_m from min_enu on that cover the box; at most kMaxSide of them along each side.
-  GroundGrid(const Eigen::Vector2d& min_enu, const Eigen::Vector2d& max_enu, double finest_m);
+  MeanMap(const Eigen::Vector2d& min_enu, const Eigen::Vector2d& max_enu, double finest_m);
   static constexpr int kMaxSide = 512;
 
   // Places outside are ignored.
@@ -22,16 +24,11 @@ class GroundGrid {
   // PNG with alpha, north at the top: a ramp from 0 to `scale`, transparent where nothing was added.
   std::string Picture(double scale) const;
 
-  int width() const { return width_; }
-  int height() const { return height_; }
-  const Eigen::Vector2d& min_enu() const { return min_enu_; }
-  Eigen::Vector2d max_enu() const { return min_enu_ + cell_m_ * Eigen::Vector2d(width_, height_); }
+  const geo::PlaneGrid& grid() const { return grid_; }
 
  private:
-  Eigen::Vector2d min_enu_;
-  double cell_m_;
-  int width_, height_;
-  std::vector<double> sums_;  // rows from the south
+  geo::PlaneGrid grid_;
+  std::vector<double> sums_;
   std::vector<uint32_t> counts_;
 };
 

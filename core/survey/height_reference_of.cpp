@@ -1,4 +1,4 @@
-#include "core/survey/height_reference.h"
+#include "core/survey/height_reference_of.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "surface/views/render_views.h"
+#include "surface/views/render_depth_views.h"
 
 #include <chrono>
 #include <optional>

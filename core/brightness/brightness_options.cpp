@@ -1,4 +1,4 @@
-#include "core/brightness/options.h"
+#include "core/brightness/brightness_options.h"
 
 #include <algorithm>
 #include <sstream>

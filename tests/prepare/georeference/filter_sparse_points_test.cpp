@@ -1,4 +1,4 @@
-#include "prepare/georeference/sparse_cloud.h"
+#include "prepare/georeference/filter_sparse_points.h"
 
 #include <gtest/gtest.h>
 

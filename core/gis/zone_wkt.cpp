@@ -1,4 +1,4 @@
-#include "core/gis/crs.h"
+#include "core/gis/zone_wkt.h"
 
 #include "core/gis/gdal_support.h"
 

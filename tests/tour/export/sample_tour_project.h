@@ -1,4 +1,4 @@
-// A project with a tour of two stops about the house of fields.h, an asset that is there and one that is not, and a surface of three levels.
+// A project with a tour of two stops about the house of sample_fields.h, an asset that is there and one that is not, and a surface of three levels.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 #include "core/base/sha256.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tour/format/sample_assets.h"
-#include "tests/tour/pictures/fields.h"
+#include "tests/tour/pictures/sample_fields.h"
 #include "tour/export/export_tour.h"
 #include "tour/format/tour_file.h"
 

@@ -1,4 +1,4 @@
-#include "prepare/bundle/lens.h"
+#include "prepare/bundle/adjusted_lens.h"
 
 #include <cmath>
 

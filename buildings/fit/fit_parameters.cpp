@@ -1,4 +1,4 @@
-#include "buildings/fit/parameters.h"
+#include "buildings/fit/fit_parameters.h"
 
 namespace skyquilt::buildings {
 

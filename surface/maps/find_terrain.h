@@ -8,7 +8,7 @@
 // terraces narrower than window_m with steps above the threshold do not, nor do slopes steeper than twice `slope`.
 #pragma once
 
-#include "surface/maps/surface_maps.h"
+#include "surface/maps/height_raster.h"
 
 namespace skyquilt::surface {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "simulate/mesh.h"
+#include "simulate/tagged_mesh.h"
 
 namespace skyquilt::simulate {
 

@@ -1,4 +1,4 @@
-#include "products/view_choice.h"
+#include "products/photo_choice.h"
 
 #include <algorithm>
 #include <cmath>

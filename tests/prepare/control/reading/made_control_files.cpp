@@ -1,4 +1,4 @@
-#include "tests/prepare/control/reading/made_control.h"
+#include "tests/prepare/control/reading/made_control_files.h"
 
 #include <fmt/core.h>
 

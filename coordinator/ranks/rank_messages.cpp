@@ -1,4 +1,4 @@
-#include "coordinator/ranks/messages.h"
+#include "coordinator/ranks/rank_messages.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "buildings/candidates/plan_grid.h"
+#include "buildings/candidates/plan_index.h"
 
 #include <cmath>
 #include <limits>
@@ -13,19 +13,16 @@ constexpr double kMostCells = 50e6;  // a point far away from all others must no
 
 }  // namespace
 
-PlanGrid::PlanGrid(const PointCloud& cloud, double cell_m) : cloud_(cloud), cell_m_(cell_m) {
+PlanIndex::PlanIndex(const PointCloud& cloud, double cell_m) : cloud_(cloud) {
   SKYQUILT_CHECK(cell_m > 0.0 && cloud.points.size() < std::numeric_limits<uint32_t>::max(), "cell " + std::to_string(cell_m));
   if (cloud.points.empty()) return;
   Eigen::AlignedBox2d box;
   for (size_t i = 0; i < cloud.points.size(); ++i) box.extend(Eigen::Vector2d(cloud.At(i).head<2>()));
-  low_ = box.min();
-  cell_m_ = std::max(cell_m, std::sqrt(box.sizes().prod() / kMostCells));
-  columns_ = 1 + static_cast<int>(box.sizes().x() / cell_m_);
-  rows_ = 1 + static_cast<int>(box.sizes().y() / cell_m_);
-  first_.assign(Index(columns_ - 1, rows_ - 1) + 2, 0);
+  grid_ = geo::PlaneGrid(box.min(), std::max(cell_m, std::sqrt(box.sizes().prod() / kMostCells)), box.sizes());
+  first_.assign(grid_.size() + 1, 0);
   const auto cell_of = [&](size_t i) {
     const Eigen::Vector2i cell = CellOf(cloud.At(i).head<2>());
-    return Index(cell.x(), cell.y());
+    return grid_.Index(cell.x(), cell.y());
   };
   for (size_t i = 0; i < cloud.points.size(); ++i) ++first_[cell_of(i) + 1];
   for (size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];

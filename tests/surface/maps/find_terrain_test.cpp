@@ -1,4 +1,4 @@
-#include "surface/maps/terrain.h"
+#include "surface/maps/find_terrain.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "core/base/random.h"
-#include "surface/maps/float_grid.h"
 #include "surface/maps/low_outliers.h"
 
 namespace skyquilt::surface {
@@ -45,7 +44,7 @@ Errors ErrorsOf(const HeightRaster& terrain, const Height& ground) {
   for (int row = 0; row < terrain.grid.height; ++row) {
     for (int column = 0; column < terrain.grid.width; ++column) {
       const Eigen::Vector2d at = terrain.grid.CellCentre(column, row);
-      const float height = terrain.height_m[static_cast<size_t>(row) * static_cast<size_t>(terrain.grid.width) + static_cast<size_t>(column)];
+      const float height = terrain.height_m[terrain.grid.Index(column, row)];
       if (std::isnan(height)) {
         ++result.missing;
       } else {
@@ -214,31 +213,31 @@ TEST(Terrain, EmptySmallAndBroken) {
 }
 
 TEST(LowOutliers, AlleysAndLightUnderTreesAreNoPits) {
-  FloatGrid grid(60, 60, 10.0F);
+  base::Grid<float> grid(60, 60, 10.0F);
   // A dead end of 3 x 7 m between houses, in cells of 0.5 m.
   for (int row = 20; row < 34; ++row) {
     for (int column = 0; column < 60; ++column) grid.value[grid.Index(column, row)] = column >= 27 && column < 33 ? 10.0F : 18.0F;
   }
   for (int column = 0; column < 60; ++column) grid.value[grid.Index(column, 34)] = 18.0F;
-  FloatGrid alley = grid;
+  base::Grid<float> alley = grid;
   EXPECT_EQ(RemoveLowOutliers(&alley, 0.5, 0.3), 0);
   grid.value[grid.Index(10, 8)] = 6.0F;
   EXPECT_EQ(RemoveLowOutliers(&grid, 0.5, 0.3), 1);
   EXPECT_TRUE(std::isnan(grid.At(10, 8)));
-  FloatGrid empty(10, 10);
+  base::Grid<float> empty(10, 10, kNoHeight);
   EXPECT_EQ(RemoveLowOutliers(&empty, 0.5, 0.3), 0);
 }
 
 TEST(LowOutliers, NoiseIsThatOfTheCells) {
   base::Random random(9);
-  FloatGrid grid(300, 200, 0.0F);
+  base::Grid<float> grid(300, 200, 0.0F);
   for (int row = 0; row < 200; ++row) {
     for (int column = 0; column < 300; ++column) {
       grid.value[grid.Index(column, row)] = static_cast<float>(0.3 * column + 0.08 * random.Normal() + (column > 150 ? 9.0 : 0.0));
     }
   }
   EXPECT_NEAR(NoiseOf(grid), 0.08, 0.004);
-  EXPECT_EQ(NoiseOf(FloatGrid(2, 2, 1.0F)), 0.0);
+  EXPECT_EQ(NoiseOf(base::Grid<float>(2, 2, 1.0F)), 0.0);
 }
 
 }  // namespace

@@ -59,6 +59,8 @@ TEST(Settings, OptionsThatAreConstantsNowAreAcceptedWithTheirValues) {
                             "network_l2 = 1e-06\n[products]\npreview_width = 1600\n[surface]\nmax_angle_deg = 85.0\nmax_hole_m2 = 30.0\n"
                             "simplify_voxels = 0.5\n[buildings]\nmin_part_m2 = 15.0\nshare_yaw_m = 60.0\n");
   EXPECT_EQ(LoadSettings({folder / "old.toml"}, {}).Flat(), defaults.Flat());
+  EXPECT_EQ(defaults.Flat().at("partition.margin_fraction"), "0.06") << "stamps and hashes of earlier versions must stay valid";
+  EXPECT_EQ(defaults.Flat().at("context.network_l2"), "1e-06");
   const std::string message = UsageErrorOf([] { LoadSettings({}, {{"surface.simplify_voxels", "0.25"}}); });
   EXPECT_NE(message.find("surface.simplify_voxels is fixed at 0.5 now"), std::string::npos) << message;
 }

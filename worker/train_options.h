@@ -1,5 +1,6 @@
 // Options for training one field. [context] has them for the coarse field of the whole survey, [train] for every block: both are trained by the same
-// code, with different budgets and sizes. Allowed values are in Fields(), and are shown in the written configuration.
+// code, with different budgets; what [context] does not name it has from [train]. Allowed values are in Fields(), and are shown in the written
+// configuration.
 #pragma once
 
 #include <string>

@@ -71,6 +71,12 @@ const FixedOption* Sections::FindFixed(const std::string& key) const {
 }
 
 void Sections::Check() const {
+  // A wrong value is named where it was given, not where it is inherited.
+  for (const Inheritance& one : inheritances_) {
+    for (const Entry& entry : entries_) {
+      if (entry.name == one.from) entry.check();
+    }
+  }
   for (const Entry& entry : entries_) entry.check();
 }
 

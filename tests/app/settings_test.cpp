@@ -73,6 +73,9 @@ TEST(Settings, TheContextFollowsTheBlocksWhereItIsNotNamed) {
   EXPECT_EQ(settings.context.features, 2);
   EXPECT_EQ(settings.context.hidden, 32);
   EXPECT_EQ(settings.context.steps, 0) << "budgets are each field's own";
+  const std::string message = UsageErrorOf([] { LoadSettings({}, {{"train.levels", "7"}, {"train.features", "2"}}); });
+  EXPECT_NE(message.find("train.levels"), std::string::npos) << message;
+  EXPECT_EQ(message.find("context"), std::string::npos) << message;
   base::WriteFileAtomically(folder / "written.toml", settings.Toml());
   EXPECT_EQ(LoadSettings({folder / "written.toml"}, {}).Flat(), settings.Flat());
 }

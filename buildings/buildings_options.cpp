@@ -26,8 +26,6 @@ std::vector<config::Field<BuildingsOptions>> BuildingsOptions::Fields() {
       {"min_height_m", &O::min_height_m, Range{0.5, 100}, "lowest roof above the ground, metres"},
       {"max_green", &O::max_green, Range{-1, 2},
        "excess green, (2g - r - b) / (r + g + b), above which what stands on the ground is taken for vegetation; 2: colours do not count"},
-      {"min_part_m2", &O::min_part_m2, Range{1, 1e6}, "smaller boxes on a roof are no parts of the building, square metres"},
-      {"share_yaw_m", &O::share_yaw_m, Range{0, 1e5}, "buildings nearer than this to each other may share one direction, metres; 0: never"},
       {"overhang_m", &O::overhang_m, Range{0, 5},
        "how far pitched roofs reach over the walls, metres; used where neither the building nor its neighbours show walls"},
       {"footprints", &O::footprints, Range(), "file with known outlines (GeoPackage, GeoJSON, Shapefile); empty: buildings are found"},
@@ -42,6 +40,10 @@ std::vector<config::Field<BuildingsOptions>> BuildingsOptions::Fields() {
       {"dxf", &O::dxf, Range(), "write the edges as DXF"},
       {"classify_cloud", &O::classify_cloud, Range(), "write classes (roof, wall, edge, ground, vegetation) into the surface's point cloud"},
   };
+}
+
+std::vector<config::FixedOption> BuildingsOptions::Fixed() {
+  return {{"min_part_m2", kMinPart_m2}, {"share_yaw_m", kShareYaw_m}};
 }
 
 void BuildingsOptions::Check() const {

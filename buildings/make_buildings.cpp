@@ -130,7 +130,7 @@ class BuildingsMaker {
                          [&](int64_t i, int) { own[static_cast<size_t>(i)] = FindDirection(candidates_[static_cast<size_t>(i)], *input_.cloud); });
     std::vector<Eigen::Vector2d> places;
     for (const Candidate& candidate : candidates_) places.push_back(Centroid(candidate.outline));
-    directions_ = ShareDirections(own, places, input_.options.share_yaw_m);
+    directions_ = ShareDirections(own, places, kShareYaw_m);
   }
 
   // Twice: where no wall was seen, the second time knows how far the roofs of the survey reach over walls that were.

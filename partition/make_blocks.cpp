@@ -29,9 +29,9 @@ struct Inputs {
   std::vector<PhotoAltitude> altitudes;  // of the training photos
 };
 
-double MarginOf(const BlockGrid& grid, const PartitionOptions& options) {
+double MarginOf(const BlockGrid& grid) {
   const double side = (grid.Max(0, 0) - grid.Min(0, 0)).minCoeff();
-  return std::min(std::max(options.margin_fraction * side, options.min_margin_m), 0.25 * side);
+  return std::min(std::max(kMarginFraction * side, kMinMargin_m), 0.25 * side);
 }
 
 // The lowest height whose pixels the block may have: of the flight above it, or of its lowest photos.
@@ -43,24 +43,22 @@ double LowestAltitude(const Inputs& in, double flown_agl_m) {
 }
 
 double VoxelsOf(const Inputs& in, const BlockGrid& grid, int index, double voxel_m) {
-  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(MarginOf(grid, in.options));
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(MarginOf(grid));
   return SurfaceVoxels(in.area, in.points, grid.Min(index) - margin, grid.Max(index) + margin, voxel_m);
 }
 
-// Uses more and more blocks until the surface of each fits the largest table, or the next grid would exceed the budget.
+// Uses more and more blocks until the surface of each fits the largest table, or the next grid would have more than kMaxBlocks.
 BlockGrid AutoGrid(const Inputs& in) {
   const Eigen::Vector2d extent = in.area.max_enu - in.area.min_enu;
   const double largest_table = std::exp2(in.options.max_log2_table_size);
   const double most_voxels = largest_table * in.options.max_voxels_per_entry;
-  const double most_blocks =
-      in.options.parameter_budget > 0.0 ? std::clamp(std::floor(in.options.parameter_budget / largest_table), 1.0, double{kMaxBlocks}) : kMaxBlocks;
   BlockGrid grid = SplitByCount(in.area.min_enu, in.area.max_enu, 1, 1);
   int rows = 1;
   int columns = 1;
   for (double side = extent.maxCoeff();; side *= 0.9) {
     const int next_rows = std::max(1, static_cast<int>(std::lround(extent.y() / side)));
     const int next_columns = std::max(1, static_cast<int>(std::lround(extent.x() / side)));
-    if (static_cast<double>(next_rows) * next_columns > most_blocks) return grid;
+    if (static_cast<double>(next_rows) * next_columns > kMaxBlocks) return grid;
     if (side < extent.maxCoeff() && next_rows == rows && next_columns == columns) continue;
     grid = SplitByCount(in.area.min_enu, in.area.max_enu, next_rows, next_columns);
     rows = next_rows;
@@ -96,7 +94,7 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   Block block;
   block.id = index;
   block.name = "r" + std::to_string(index / grid.columns()) + "c" + std::to_string(index % grid.columns());
-  block.margin_m = MarginOf(grid, in.options);
+  block.margin_m = MarginOf(grid);
   block.flown_agl_m = BlockAltitude(in.altitudes, grid.Min(index), grid.Max(index));
   block.altitude_agl_m = in.options.altitudes.empty() ? block.flown_agl_m : in.options.altitudes[static_cast<size_t>(index)];
   // Voxels far finer than the photos' pixels cannot be told apart by them.
@@ -106,7 +104,7 @@ Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
   block.min_enu.head<2>() = grid.Min(index);
   block.max_enu.head<2>() = grid.Max(index);
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(block.margin_m);
-  const auto range = VerticalRange(in.points, grid.Min(index) - margin, grid.Max(index) + margin, block.gsd_m, in.options);
+  const auto range = VerticalRange(in.points, grid.Min(index) - margin, grid.Max(index) + margin, block.gsd_m);
   const double half_height_m = 40.0 * block.gsd_m;  // for a block without points
   block.min_enu.z() = range ? range->first : in.area.ground_m - half_height_m;
   block.max_enu.z() = range ? range->second : in.area.ground_m + half_height_m;

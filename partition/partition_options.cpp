@@ -15,10 +15,6 @@ std::vector<config::Field<PartitionOptions>> PartitionOptions::Fields() {
       {"area", &O::area, Range::OneOf({"covered", "points"}),
        "ground to divide into blocks. covered: what at least min_views training photos see well; points: bounds of the sparse points"},
       {"min_views", &O::min_views, Range{1, 100}, "training photos that must see a piece of ground for it to count as covered"},
-      {"margin_fraction", &O::margin_fraction, Range{0, 0.25}, "overlap on each side of a block as a fraction of its shorter side"},
-      {"min_margin_m", &O::min_margin_m, Range{0, 1e5}, "smallest overlap in metres; never more than a quarter of the side"},
-      {"z_margin_below_m", &O::z_margin_below_m, Range{0, 1e5}, "metres of free space below the lowest ground; clamped to 8..40 ground pixels"},
-      {"z_margin_above_m", &O::z_margin_above_m, Range{0, 1e5}, "metres of free space above the highest roof; clamped to 8..40 ground pixels"},
       {"heights", &O::heights, Range::OneOf({"block", "survey"}),
        "block: the height of each box fits its own points; survey: all boxes have the height range of the whole survey (more floaters above low "
        "roofs)"},
@@ -31,9 +27,16 @@ std::vector<config::Field<PartitionOptions>> PartitionOptions::Fields() {
        "surface voxels of the finest level per table entry, used to choose a block's table size: more means smaller tables"},
       {"max_voxels_per_entry", &O::max_voxels_per_entry, Range{0.1, 1000},
        "with blocks = auto: use enough blocks that none has more surface voxels of the finest level per entry of the largest table"},
-      {"parameter_budget", &O::parameter_budget, Range{0, 1e15},
-       "with blocks = auto: most table entries of the finest level, summed over all blocks; 0: no limit"},
   };
+}
+
+std::vector<config::FixedOption> PartitionOptions::Fixed() {
+  // parameter_budget was a limit of all table entries; 0: none.
+  return {{"margin_fraction", kMarginFraction},
+          {"min_margin_m", kMinMargin_m},
+          {"z_margin_below_m", kFreeHeight_m},
+          {"z_margin_above_m", kFreeHeight_m},
+          {"parameter_budget", 0.0}};
 }
 
 void PartitionOptions::Check() const {

@@ -6,6 +6,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
+#include "partition/partition_options.h"
 
 namespace skyquilt::partition {
 namespace {
@@ -21,7 +22,7 @@ std::vector<double> HeightsInside(const std::vector<Eigen::Vector3d>& points, co
 }  // namespace
 
 std::optional<std::pair<double, double>> VerticalRange(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low,
-                                                       const Eigen::Vector2d& high, double gsd_m, const PartitionOptions& options) {
+                                                       const Eigen::Vector2d& high, double gsd_m) {
   SKYQUILT_CHECK(gsd_m > 0.0, std::to_string(gsd_m));
   constexpr size_t kEnough = 50;
   const std::vector<double> heights = HeightsInside(points, low, high);
@@ -34,8 +35,8 @@ std::optional<std::pair<double, double>> VerticalRange(const std::vector<Eigen::
     bottom = std::min(*least, base::Quantile(around, 0.25));
     top = std::max(*most, base::Quantile(around, 0.75));
   }
-  bottom -= std::clamp(options.z_margin_below_m, 8.0 * gsd_m, 40.0 * gsd_m);
-  top += std::clamp(options.z_margin_above_m, 8.0 * gsd_m, 40.0 * gsd_m);
+  bottom -= std::clamp(kFreeHeight_m, 8.0 * gsd_m, 40.0 * gsd_m);
+  top += std::clamp(kFreeHeight_m, 8.0 * gsd_m, 40.0 * gsd_m);
   return std::make_pair(bottom, top);
 }
 

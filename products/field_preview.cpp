@@ -85,7 +85,7 @@ FieldPreview MakeFieldPreview(const scene::SceneInfo& info, const RayCaster& cas
     progress.Update(static_cast<double>(row + 1) * grid.width);
   }
   progress.Finish();
-  return {WritePreview(info, map, kFromContext, folder, options.preview_width), grid, map.Filled()};
+  return {WritePreview(info, map, kFromContext, folder, kPreviewWidth), grid, map.Filled()};
 }
 
 }  // namespace skyquilt::products

@@ -21,7 +21,7 @@ struct FieldPreview {
 
 // Writes the preview (products/preview_files.h), made from the context, into `folder`. info: place and box of the field; info.gsd_m: its finest
 // detail, metres. The size of the map, and nothing else, follows from the measured speed of the caster, so that rendering takes about `seconds`.
-// options: boundary, min_opacity and preview_width count. Throws base::UsageError as BoundaryOf, base::InputError when a file cannot be written,
+// options: boundary and min_opacity count. Throws base::UsageError as BoundaryOf, base::InputError when a file cannot be written,
 // base::Interrupted.
 FieldPreview MakeFieldPreview(const scene::SceneInfo& info, const RayCaster& caster, double seconds, const ProductOptions& options,
                               const std::filesystem::path& folder);

@@ -141,7 +141,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   if (dsm) dsm->Close();
   progress.Finish();
   products.filled = products.rays > 0 ? static_cast<double>(filled) / static_cast<double>(products.rays) : 0.0;
-  WriteMapPreviews(info, grid, products.orthophoto, products.dsm, folder, options.preview_width);
+  WriteMapPreviews(info, grid, products.orthophoto, products.dsm, folder, kPreviewWidth);
   if (options.ortho) RemovePreviews(folder);
   products.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return products;

@@ -209,7 +209,7 @@ PointPreview MakePointPreview(const survey::Survey& survey, const ProductOptions
   EqualiseBrightness(nodes.places_enu, nodes.views, &photos);
   const std::vector<uint8_t> inside = boundary ? boundary->Mask(grid) : std::vector<uint8_t>();
   const PreviewMap map = Paint(grid, cells, nodes, MosaicPainter(photos, flown.height_m), inside, threads);
-  const std::filesystem::path picture = WritePreview(info, map, kFromSparsePoints, folder, options.preview_width);
+  const std::filesystem::path picture = WritePreview(info, map, kFromSparsePoints, folder, kPreviewWidth);
   return {picture, grid, map.Filled(), chosen - static_cast<int>(failures.size()), static_cast<int>(failures.size())};
 }
 

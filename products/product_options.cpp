@@ -17,7 +17,6 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
       {"max_pixels", &O::max_pixels, Range{1, 1e11},
        "most cells of a map; with resolution_m = 0 larger maps are made coarser, otherwise they are refused"},
       {"min_opacity", &O::min_opacity, Range{0.01, 0.99}, "map cells with a lower opacity have no data"},
-      {"preview_width", &O::preview_width, Range{16, 16384}, "width of the PNG previews in pixels"},
       {"exposure", &O::exposure, Range(),
        "brightness of images, video and orthophoto: normal, stops above normal (-10..10), or the name of a photo whose brightness to use"},
       {"vertical", &O::vertical, Range::OneOf({"as-tagged", "ellipsoid", "egm96"}),
@@ -32,6 +31,10 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
       {"video_width", &O::video_width, Range{16, 16384}.MultipleOf(2), "width of the video in pixels; even, as H.264 requires"},
       {"video_height", &O::video_height, Range{16, 16384}.MultipleOf(2), "height of the video in pixels; even, as H.264 requires"},
   };
+}
+
+std::vector<config::FixedOption> ProductOptions::Fixed() {
+  return {{"preview_width", kPreviewWidth}};
 }
 
 void ProductOptions::Check() const {

@@ -9,6 +9,9 @@
 
 namespace skyquilt::products {
 
+// Of the PNG pictures of maps, pixels at most: a screen's width, so that report and viewer open at once. The maps themselves have every cell.
+constexpr int kPreviewWidth = 1600;
+
 struct ProductOptions {
   bool ortho = true;
   bool dsm = true;
@@ -16,7 +19,6 @@ struct ProductOptions {
   double resolution_m = 0.0;           // metres per cell of the maps; 0: ground sampling distance rounded to 1, 2 or 5 times a power of ten
   double max_pixels = 25e6;            // most cells of a map; larger maps are made coarser if resolution_m = 0 and otherwise refused
   double min_opacity = 0.5;            // map cells with a lower opacity have no data, in (0, 1)
-  int preview_width = 1600;            // of the PNG previews, pixels
   std::string exposure = "normal";     // or stops above it, or the name of a photo; for images, video and orthophoto
   std::string vertical = "as-tagged";  // what heights of maps, surface and buildings are above: as-tagged, ellipsoid or egm96
   std::string boundary;                // GeoJSON or GeoPackage with polygons that limit all products; empty: the whole scene
@@ -27,6 +29,7 @@ struct ProductOptions {
   int video_height = 270;
 
   static std::vector<config::Field<ProductOptions>> Fields();
+  static std::vector<config::FixedOption> Fixed();
   // Throws base::UsageError that names the option, its value and the rule it breaks.
   void Check() const;
 };

@@ -52,7 +52,7 @@ FuseOptions FuseOptionsOf(const SurfaceOptions& options, double voxel_m) {
   fuse.min_views = options.min_views;
   fuse.min_photos = 1;
   fuse.tile_voxels = kTileVoxels;
-  fuse.max_angle_deg = options.max_angle_deg;
+  fuse.max_angle_deg = kMaxAngle_deg;
   return fuse;
 }
 
@@ -135,7 +135,7 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
     if (!LoadPiece(file, &tiles)) {
       tiles = SplitAlongLattice(FusePiece(views, piece, plan.fuse, threads), kTileVoxels);
       CutToBoundary(input, &tiles);
-      SimplifyTiles(&tiles, input.options.simplify_voxels * plan.fuse.voxel_m, threads);
+      SimplifyTiles(&tiles, kSimplifyVoxels * plan.fuse.voxel_m, threads);
       SaveMeshTiles(tiles, file);
     }
     std::move(tiles.begin(), tiles.end(), std::back_inserter(all));
@@ -205,7 +205,7 @@ FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double vo
     throw base::UsageError("products.boundary leaves nothing of the surface: the boundary does not meet it. Give a polygon that does, or none");
   }
   const int islands = DropIslands(&mesh, input.options.min_island_m2);
-  result.filled_m2 = FillGroundHoles(&mesh, input.options.max_hole_m2, 4.0 * result.voxel_m);
+  result.filled_m2 = FillGroundHoles(&mesh, kMaxHole_m2, 4.0 * result.voxel_m);
   result.edges = CountEdges(mesh);
   result.area_m2 = Area(mesh);
   result.tiles = SplitIntoTiles(mesh, result.tile_size_m);

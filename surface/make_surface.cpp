@@ -151,7 +151,7 @@ class SurfaceMaker {
 
   void MakeProducts(FusedMesh fused, const DepthViews& views) {
     SurfaceMaps maps = MakeMaps(fused.tiles);
-    const double max_error_m = std::max(input_.options.simplify_voxels, 0.25) * fused.voxel_m;
+    const double max_error_m = kSimplifyVoxels * fused.voxel_m;
     const double tile_size_m = fused.tile_size_m;
     std::vector<MeshTile> levels = input_.options.tiles ? BuildLevels(std::move(fused.tiles), max_error_m, threads_) : std::move(fused.tiles);
     const SurfaceOptions& options = input_.options;

@@ -16,11 +16,8 @@ std::vector<config::Field<SurfaceOptions>> SurfaceOptions::Fields() {
       {"virtual_views", &O::virtual_views, Range(), "also look at the scene from above and obliquely where photos leave gaps"},
       {"min_opacity", &O::min_opacity, Range{0.85, 0.999}, "depths of pixels with a lower opacity are not used"},
       {"max_spread_voxels", &O::max_spread_voxels, Range{0.1, 1e6}, "nor depths where the surface is blurred by more than this along the ray"},
-      {"max_angle_deg", &O::max_angle_deg, Range{10, 89.9}, "nor depths where the surface is seen at a larger angle from its normal, degrees"},
       {"min_views", &O::min_views, Range{1, 100}, "parts of the surface that fewer views saw are dropped"},
       {"min_island_m2", &O::min_island_m2, Range{0, 1e9}, "separate pieces of the surface with a smaller area are dropped, square metres"},
-      {"max_hole_m2", &O::max_hole_m2, Range{0, 1e9}, "holes in the ground up to this area are closed, and marked; square metres"},
-      {"simplify_voxels", &O::simplify_voxels, Range{0, 100}, "largest error of the simplification, in voxels; 0: every triangle is kept"},
       {"texel_gsd", &O::texel_gsd, Range{0.1, 1000}, "pixels of the texture, in ground sampling distances"},
       {"photo_detail", &O::photo_detail, Range{0, 1},
        "share of the fine detail of photos that is added to the texture; brings stripes where photos differ"},
@@ -39,6 +36,10 @@ std::vector<config::Field<SurfaceOptions>> SurfaceOptions::Fields() {
       {"contour_interval_m", &O::contour_interval_m, Range{0, 1e4}, "height between contours, metres; 0: chosen from the relief"},
       {"odm_names", &O::odm_names, Range(), "also provide the products under the names that OpenDroneMap uses, in surface/odm"},
   };
+}
+
+std::vector<config::FixedOption> SurfaceOptions::Fixed() {
+  return {{"max_angle_deg", kMaxAngle_deg}, {"max_hole_m2", kMaxHole_m2}, {"simplify_voxels", kSimplifyVoxels}};
 }
 
 void SurfaceOptions::Check() const {

@@ -7,6 +7,14 @@
 
 namespace skyquilt::surface {
 
+// Depths where the surface is seen at a larger angle from its normal are not used: along it, a pixel's depth spans many voxels.
+constexpr double kMaxAngle_deg = 85.0;
+// Holes in the ground up to this area are closed: those under cars and trees, which no photo sees. Larger ones stay open, as nothing tells their
+// ground.
+constexpr double kMaxHole_m2 = 30.0;
+// Largest error of the simplification, in voxels: below half a voxel the fused depths say nothing about the surface.
+constexpr double kSimplifyVoxels = 0.5;
+
 struct SurfaceOptions {
   bool enabled = true;              // made by 'skyquilt run'
   double voxel_gsd = 1.5;           // cells in which depths are fused, in ground sampling distances of the finest block
@@ -14,11 +22,8 @@ struct SurfaceOptions {
   bool virtual_views = true;        // also look from above and obliquely where photos leave gaps
   double min_opacity = 0.85;        // depths of pixels with a lower opacity are not used; at least 0.85, where a ray reaches the back of a surface
   double max_spread_voxels = 20.0;  // nor where the surface is blurred by more than this along the ray
-  double max_angle_deg = 85.0;      // nor where it is seen at a larger angle from its normal
   int min_views = 3;                // faces seen by fewer views are dropped
   double min_island_m2 = 1.0;       // as are separate pieces with a smaller area
-  double max_hole_m2 = 30.0;        // holes in the ground up to this area are closed
-  double simplify_voxels = 0.5;     // largest error of the simplification, in voxels; 0: none
   double texel_gsd = 1.0;           // pixels of the texture, in ground sampling distances
   double photo_detail = 0.0;        // share of the fine detail of photos that is added to the texture, 0 to 1
   int jpeg_quality = 88;            // of the texture
@@ -33,6 +38,7 @@ struct SurfaceOptions {
   bool odm_names = false;           // also under the names that OpenDroneMap uses
 
   static std::vector<config::Field<SurfaceOptions>> Fields();
+  static std::vector<config::FixedOption> Fixed();
   // Throws base::UsageError that names the option, its value and the rule it breaks.
   void Check() const;
 };

@@ -92,7 +92,7 @@ void FieldTrainer::MeasureFootprints() {
 }
 
 StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
-  const PhotoPyramid pyramid(options_.pyramid, options_.pyramid_start, options_.pyramid_until, progress);
+  const PhotoPyramid pyramid(options_.pyramid, options_.pyramid_start, kPyramidUntil, progress);
   const double strength = priors_.options.Strength(progress);
   const double point_strength = priors_.options.PointStrength(progress);
   PriorRays prior_rays;
@@ -118,7 +118,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   const double warm_up = std::min(1.0, static_cast<double>(state_.step + 1) / kWarmUpSteps);
   const double decay = std::pow(options_.final_learning_rate_share, std::clamp((progress - kDecayFrom) / (1.0 - kDecayFrom), 0.0, 1.0));
   step.learning_rate = options_.learning_rate * learning_rate_scale * warm_up * decay;
-  step.network_l2 = options_.network_l2;
+  step.network_l2 = kNetworkL2;
   step.distortion = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
   brightness::ResponseLearner* learner = learner_ != nullptr && learner_->active() ? learner_ : nullptr;
   const StepResult result = step_.Train(batch_, step, target_.parameters, state_, learner);

@@ -40,8 +40,6 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
        "shares of the rays that are drawn from the photos at 1, 1/2, 1/4 and 1/8 of their size; one to four numbers of any sum. All rays come from "
        "the photos at full size with brightness.luminance_form = product"},
       {"pyramid_start", &O::pyramid_start, Range{0, 1e6}, "these shares at the start of the training; empty: as pyramid"},
-      {"pyramid_until", &O::pyramid_until, Range{0, 1}, "share of the budget in which pyramid_start changes into pyramid"},
-      {"network_l2", &O::network_l2, Range{0, 1}, "weight decay of the networks"},
       {"distortion", &O::distortion, Range{0, 100}, "weight of the distortion loss, which concentrates the density of a ray at one distance; 0: off"},
       {"empty_ray_share", &O::empty_ray_share, Range{0, 0.5},
        "share of a block's rays whose surface is behind the block, so that the block learns to be transparent there"},
@@ -55,6 +53,10 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
        "cells that a field samples first: surfaces (between the sparse points; blocks near the surfaces of the context) or everywhere (for "
        "comparison)"},
   };
+}
+
+std::vector<config::FixedOption> TrainOptions::Fixed() {
+  return {{"pyramid_until", kPyramidUntil}, {"network_l2", kNetworkL2}};
 }
 
 void TrainOptions::Check(const std::string& section) const {

@@ -1,5 +1,6 @@
 // Options for training one field. [context] has them for the coarse field of the whole survey, [train] for every block: both are trained by the same
-// code, with different budgets and sizes. Allowed values are in Fields(), and are shown in the written configuration.
+// code, with different budgets; what [context] does not name it has from [train]. Allowed values are in Fields(), and are shown in the written
+// configuration.
 #pragma once
 
 #include <string>
@@ -38,8 +39,6 @@ struct TrainOptions {
   // Shares of the rays from photos at 1, 1/2, 1/4 and 1/8 (worker/rays/photo_pyramid.h), and how they change.
   std::vector<double> pyramid = {0.6, 0.18, 0.11, 0.11};
   std::vector<double> pyramid_start = {0.9, 0.05, 0.025, 0.025};
-  double pyramid_until = 1.0;
-  double network_l2 = 1e-6;       // weight decay of the networks
   double distortion = 1e-2;       // weight of the distortion loss (worker/losses/distortion_loss.h)
   double empty_ray_share = 0.05;  // share of a block's rays whose surface is behind the block: it must be transparent there
 
@@ -49,9 +48,15 @@ struct TrainOptions {
   std::string start = "surfaces";   // cells that are sampled first: near known surfaces, or everywhere that photos see
 
   static std::vector<config::Field<TrainOptions>> Fields();
+  static std::vector<config::FixedOption> Fixed();
   // Throws base::UsageError that names the option and its rule. section: "context" or "train".
   void Check(const std::string& section) const;
 };
+
+// Share of the budget in which the pyramid changes from its start to its end: all of it, as reduced photos teach most when the shapes are known.
+constexpr double kPyramidUntil = 1.0;
+// Weight decay of the networks. 1e-4 costs 0.1 dB (docs/experiments/brighton-beach.md).
+constexpr double kNetworkL2 = 1e-6;
 
 // Steps per field when neither steps nor seconds is set.
 constexpr int kDefaultSteps = 2000;

@@ -20,6 +20,7 @@ namespace {
 
 // The options set by --config: those of a file, or of a preset. When a file and a preset have this name, the file is used.
 struct NamedConfig {
+  bool starts_anew = false;  // "default" replaces all values of the project's own configuration
   std::vector<std::filesystem::path> files;
   std::vector<config::Override> overrides;
 };
@@ -27,25 +28,21 @@ struct NamedConfig {
 NamedConfig FindConfig(const std::string& config) {
   if (config.empty()) return {};
   // A folder with the name of a preset (for instance an output folder "fast") is not a configuration.
-  if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.files = {config}, .overrides = {}};
+  if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.starts_anew = false, .files = {config}, .overrides = {}};
   const std::vector<std::string> presets = PresetNames();
   if (std::find(presets.begin(), presets.end(), config) == presets.end()) {
     const std::string nearest = config::Nearest(config, presets);
     throw base::InputError(config, "no such file, and no preset of that name",
                            nearest.empty() ? "Give a TOML file, or one of fast, default, quality" : "Did you mean '" + nearest + "'?");
   }
-  if (config != "default") return {.files = {}, .overrides = PresetOverrides(config)};
-  // All defaults are set explicitly, because they must replace the values of the project's own configuration.
-  NamedConfig named;
-  for (const auto& [key, value] : coordinator::Settings().Flat()) named.overrides.push_back({key, value});
-  return named;
+  return {.starts_anew = config == "default", .files = {}, .overrides = PresetOverrides(config)};
 }
 
 }  // namespace
 
 coordinator::Settings CommandState::Load(const std::vector<std::filesystem::path>& files, const std::vector<config::Override>& flags) const {
   const NamedConfig named = FindConfig(config);
-  std::vector<std::filesystem::path> all_files = files;
+  std::vector<std::filesystem::path> all_files = named.starts_anew ? std::vector<std::filesystem::path>() : files;
   all_files.insert(all_files.end(), named.files.begin(), named.files.end());
   std::vector<config::Override> overrides = named.overrides;
   for (const std::string& text : set) overrides.push_back(config::ParseOverride(text));
@@ -56,6 +53,7 @@ coordinator::Settings CommandState::Load(const std::vector<std::filesystem::path
 
 coordinator::Settings CommandState::LoadOver(coordinator::Settings settings) const {
   const NamedConfig named = FindConfig(config);
+  if (named.starts_anew) settings = {};
   const config::Sections sections = settings.AllSections();
   for (const std::filesystem::path& file : named.files) config::ReadToml(file, sections);
   for (const config::Override& entry : named.overrides) settings.Set(entry);

@@ -10,7 +10,7 @@ namespace skyquilt::app {
 
 // "fast", "default", "quality": from the fastest to the best result.
 std::vector<std::string> PresetNames();
-// The options in which a preset differs from the defaults. Throws base::UsageError for an unknown name.
+// The options in which a preset differs from the defaults, without those that follow from others. Throws base::UsageError for an unknown name.
 std::vector<config::Override> PresetOverrides(const std::string& name);
 
 }  // namespace skyquilt::app

@@ -132,11 +132,12 @@ StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options) {
   run("single_large", "single, as many parameters", {whole, {"partition.min_log2_table_size", joined}, {"partition.max_log2_table_size", joined}});
   run("independent", "blocks, independent", {divided, {"train.coupling", "independent"}});
   const config::Override one_height = {"partition.heights", "survey"}, everywhere = {"train.start", "everywhere"};
+  const config::Override same_context = {"context.start", study.settings().context.start};
   run("shared_height", "blocks, one height for all", {divided, one_height});
   // Floater opacity can only be measured when the true surface is known.
   if (std::isfinite(results.front().floater_opacity)) {
-    run("everywhere", "blocks, start in the whole box", {divided, everywhere});
-    run("shared_everywhere", "one height for all, start in the whole box", {divided, one_height, everywhere});
+    run("everywhere", "blocks, start in the whole box", {divided, everywhere, same_context});
+    run("shared_everywhere", "one height for all, start in the whole box", {divided, one_height, everywhere, same_context});
   }
   ScoreCommonPixels(study.folder(), PointersTo(results));
 

@@ -20,7 +20,7 @@ constexpr float kNoRoof = -std::numeric_limits<float>::infinity();
 
 // Per cell, the highest roof within kStepReach_m. Pieces that are too small to be parts of a building, such as lift houses, do not count, so that
 // their sides are no walls of it; the largest piece always does.
-std::vector<float> WallTops(const RoofArea& area, std::span<const PlanePiece> pieces, double min_part_m2) {
+std::vector<float> WallTops(const RoofArea& area, std::span<const PlanePiece> pieces) {
   double largest_m2 = 0.0;
   for (size_t cell = 0; cell < area.piece.size(); ++cell) {
     if (area.mask.value[cell] != 0 && area.piece[cell] >= 0)
@@ -29,7 +29,7 @@ std::vector<float> WallTops(const RoofArea& area, std::span<const PlanePiece> pi
   std::vector<float> own(area.piece.size(), kNoRoof), tops(area.piece.size(), kNoRoof);
   for (size_t cell = 0; cell < own.size(); ++cell) {
     if (area.mask.value[cell] == 0 || area.piece[cell] < 0) continue;
-    if (pieces[static_cast<size_t>(area.piece[cell])].plane.area_m2 >= std::min(min_part_m2, largest_m2)) own[cell] = area.roof_z[cell];
+    if (pieces[static_cast<size_t>(area.piece[cell])].plane.area_m2 >= std::min(kMinPart_m2, largest_m2)) own[cell] = area.roof_z[cell];
   }
   const auto reach = static_cast<int>(std::ceil(kStepReach_m / area.cell_m));
   for (int row = 0; row < area.mask.rows; ++row) {
@@ -89,7 +89,7 @@ Gathered GatherPoints(const RoofArea& area, std::span<const PlanePiece> pieces, 
   const PointCloud& cloud = surface.cloud;
   const double tolerance_m = RoofTolerance(surface.gsd_m);
   const std::vector<int32_t> nearest = NearestCells(area.mask);
-  const std::vector<float> wall_tops = WallTops(area, pieces, surface.options.min_part_m2);
+  const std::vector<float> wall_tops = WallTops(area, pieces);
   surface.plan.ForEachIn({area.origin, area.max()}, [&](uint32_t i) {
     const SurfacePoint& point = cloud.points[i];
     const Eigen::Vector3d at = cloud.At(i);

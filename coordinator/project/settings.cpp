@@ -11,7 +11,10 @@ config::Sections Settings::AllSections() {
   sections.Add("prepare", prepare, "from photos to a geo-referenced survey");
   sections.Add("partition", partition, "division of the survey into blocks");
   sections.Add("brightness", brightness, "correction of exposure differences between photos");
-  sections.Add("context", context, "the coarse field of the whole survey");
+  sections.Add(
+      "context", context,
+      "the coarse field of the whole survey: every option of [train] may be given here too; what is not given is as there, but for steps and "
+      "seconds");
   sections.Add("train", train, "the fine field of each block");
   sections.Add("priors", priors, "what the blocks are taught about surfaces beside the photos");
   sections.Add("merge", merge, "how blocks are joined into one scene");
@@ -20,6 +23,8 @@ config::Sections Settings::AllSections() {
   sections.Add("buildings", buildings, "buildings of the surface with their measures");
   sections.Add("tour", tour, "tours that are given away as a folder");
   sections.Add("evaluate", evaluate, "scores and report");
+  // Both fields divide one budget: what a block may cost says nothing about the context.
+  sections.Inherit("context", "train", {"steps", "seconds"}, named_in_context);
   sections.Rename("simulate.preset", "simulate.place");
   sections.Retire("run.context_ranks", "rank 0 trains the context alone");
   return sections;

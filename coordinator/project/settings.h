@@ -1,6 +1,7 @@
 // Every option of the program, one member per section of the configuration file.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct Settings {
   buildings::BuildingsOptions buildings;
   tour::TourOptions tour;
   evaluate::EvaluateOptions evaluate;
+  std::set<std::string> named_in_context;  // keys of [context] that a configuration named; the others follow [train], but for the two budgets
 
   // The result holds references to this object.
   config::Sections AllSections();

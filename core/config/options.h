@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -23,6 +24,9 @@
 
 namespace skyquilt::config {
 
+// kWhenChanged: written to configuration files only with another value than its default; for options that few people look for.
+enum class Written { kAlways, kWhenChanged };
+
 // Describes one option of a struct: its key in the configuration, its member, its allowed values, and its help text (meaning, unit, special values).
 template <typename Options>
 struct Field {
@@ -30,6 +34,14 @@ struct Field {
   std::variant<bool Options::*, int Options::*, double Options::*, std::string Options::*, std::vector<double> Options::*> member;
   Range range;
   std::string help;
+  Written written = Written::kAlways;
+};
+
+// An option of earlier versions that is a constant now. Old configurations may still give it, with this value only; a warning is logged then. Hashes
+// still contain it, so that results of earlier versions are taken.
+struct FixedOption {
+  std::string key;
+  std::variant<int, double> value;
 };
 
 using Value = std::variant<bool*, int*, double*, std::string*, std::vector<double>*>;  // points to the option's member
@@ -40,14 +52,22 @@ struct Option {
   Value value;
   Range range;
   std::string help;
+  std::string unwritten = {};  // the value with which it is not written to files, in TOML syntax; empty: it is always written
 };
+
+// One value in TOML syntax; numbers in the shortest form that reads back to the same bits.
+std::string TomlText(const Value& value);
+std::string TomlText(const FixedOption& fixed);
 
 template <typename Options>
 std::vector<Option> OptionsOf(Options& options) {
   std::vector<Option> list;
+  Options defaults;
   for (Field<Options>& field : Options::Fields()) {
-    const Value value = std::visit([&](auto member) { return Value(&(options.*member)); }, field.member);
-    list.push_back({std::move(field.key), value, std::move(field.range), std::move(field.help)});
+    const auto value_in = [&field](Options& object) { return std::visit([&](auto member) { return Value(&(object.*member)); }, field.member); };
+    const bool is_always_written = field.written == Written::kAlways;
+    list.push_back({std::move(field.key), value_in(options), std::move(field.range), std::move(field.help),
+                    is_always_written ? std::string() : TomlText(value_in(defaults))});
   }
   return list;
 }
@@ -75,6 +95,12 @@ class Sections {
                             options.Check();
                           }
                         }});
+    if constexpr (requires { Options::Fixed(); }) {
+      for (FixedOption& fixed : Options::Fixed()) {
+        fixed.key = name + "." + fixed.key;
+        fixed_.push_back(std::move(fixed));
+      }
+    }
   }
   struct Entry {
     std::string name;
@@ -89,6 +115,20 @@ class Sections {
   // Calls the Check of every section's struct. Throws base::UsageError for a value that is not allowed, alone or in combination.
   void Check() const;
 
+  // An option of section `name` that no configuration named has the value of the same option of section `from`, and is not written to files with it,
+  // unless its key is in `own`. `named`: the keys that were named; belongs to the object with the options, as sections are made anew for every file.
+  void Inherit(const std::string& name, const std::string& from, std::set<std::string> own, std::set<std::string>& named) {
+    inheritances_.push_back({name, from, std::move(own), &named});
+  }
+  // The option whose value this option ("section.key") has when it is not named; null when it inherits nothing.
+  const Option* Inherited(const std::string& key) const;
+  // Call after options were set: `given`, as "section.key", are named from now on, and their values go to the options that inherit them.
+  void PassOn(const std::set<std::string>& given) const;
+
+  // The constant that an option of earlier versions has become; null when there is none.
+  const FixedOption* FindFixed(const std::string& key) const;
+  const std::vector<FixedOption>& fixed() const { return fixed_; }
+
   // Options of earlier versions, as "section.key". Old configurations may still contain them; a warning is logged then.
   void Retire(const std::string& key, const std::string& why) { retired_[key] = why; }          // ignored
   void Rename(const std::string& old_key, const std::string& key) { renamed_[old_key] = key; }  // sets `key` instead
@@ -98,7 +138,15 @@ class Sections {
   std::string CurrentName(const std::string& key, const std::string& origin) const;
 
  private:
+  struct Inheritance {
+    std::string name, from;
+    std::set<std::string> own;
+    std::set<std::string>* named;
+  };
+
   std::vector<Entry> entries_;
+  std::vector<Inheritance> inheritances_;
+  std::vector<FixedOption> fixed_;
   std::map<std::string, std::string> retired_;
   std::map<std::string, std::string> renamed_;
 };
@@ -108,11 +156,9 @@ class Sections {
 // its range. `origin`: the file's name for messages.
 void ReadToml(const std::filesystem::path& file, const Sections& sections);
 void ReadTomlText(const std::string& text, const std::string& origin, const Sections& sections);
-// A TOML file with every option and its value; help and range are comments.
+// A TOML file with every option and its value, without values that are inherited or not worth writing; help and range are comments.
 std::string WriteToml(const Sections& sections);
-// One value in TOML syntax; numbers in the shortest form that reads back to the same bits.
-std::string TomlText(const Value& value);
-// All options as "section.key" -> value in TOML syntax: a canonical form for hashing and comparing configurations.
+// All options, fixed ones too, as "section.key" -> value in TOML syntax: a canonical form for hashing and comparing configurations.
 std::map<std::string, std::string> Flatten(const Sections& sections);
 // 16 hex digits.
 std::string Hash(const std::map<std::string, std::string>& flat);

@@ -47,7 +47,8 @@ void ApplyOverride(const Override& entry, const Sections& sections) {
       std::all_of(entry.key.begin(), entry.key.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.'; });
   if (!is_plain) throw base::UsageError("'" + entry.key + "' is not an option: write section.key=value, for instance --set train.steps=4000");
   const Option* option = sections.Find(sections.CurrentName(entry.key, ""));
-  const std::string value = option == nullptr ? "true" : InToml(entry.value, option->value);
+  const bool is_fixed = sections.FindFixed(entry.key) != nullptr;
+  const std::string value = option != nullptr ? InToml(entry.value, option->value) : is_fixed ? entry.value : "true";
   try {
     // Two lines would be two options.
     if ((entry.key + value).find('\n') != std::string::npos) throw base::InputError(entry.key, "has more than one line", "");

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/config/options.h"
@@ -42,7 +44,39 @@ const Option* Sections::Find(const std::string& key) const {
   return nullptr;
 }
 
+const Option* Sections::Inherited(const std::string& key) const {
+  for (const Inheritance& one : inheritances_) {
+    if (!key.starts_with(one.name + ".")) continue;
+    const std::string bare = key.substr(one.name.size() + 1);
+    return one.own.contains(bare) ? nullptr : Find(one.from + "." + bare);
+  }
+  return nullptr;
+}
+
+void Sections::PassOn(const std::set<std::string>& given) const {
+  for (const Inheritance& one : inheritances_) {
+    const auto entry = std::find_if(entries_.begin(), entries_.end(), [&one](const Entry& section) { return section.name == one.name; });
+    for (const Option& option : entry->options) {
+      if (given.contains(one.name + "." + option.key)) one.named->insert(option.key);
+      if (one.own.contains(option.key) || one.named->contains(option.key) || !given.contains(one.from + "." + option.key)) continue;
+      const Value& source = Find(one.from + "." + option.key)->value;
+      std::visit([&source](auto* value) { *value = *std::get<decltype(value)>(source); }, option.value);
+    }
+  }
+}
+
+const FixedOption* Sections::FindFixed(const std::string& key) const {
+  const auto found = std::find_if(fixed_.begin(), fixed_.end(), [&key](const FixedOption& fixed) { return fixed.key == key; });
+  return found == fixed_.end() ? nullptr : &*found;
+}
+
 void Sections::Check() const {
+  // A wrong value is named where it was given, not where it is inherited.
+  for (const Inheritance& one : inheritances_) {
+    for (const Entry& entry : entries_) {
+      if (entry.name == one.from) entry.check();
+    }
+  }
   for (const Entry& entry : entries_) entry.check();
 }
 

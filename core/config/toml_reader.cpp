@@ -6,6 +6,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/log.h"
 #include "core/base/text.h"
 #include "core/config/checked_toml.h"
 #include "core/config/options.h"
@@ -143,6 +144,15 @@ Known Describe(const Sections& sections) {
   throw base::UsageError(From(origin) + "unknown key '" + name + "'" + advice + LineOf(node));
 }
 
+// Takes the value of an option that is a constant now. Another value than the constant's would be silently lost: it is refused.
+void TakeFixed(const std::string& origin, const FixedOption& fixed, const toml::node& node) {
+  const double constant = std::visit([](auto value) { return static_cast<double>(value); }, fixed.value);
+  if (!node.is_number() || node.value<double>() != constant) {
+    throw base::UsageError(From(origin) + fixed.key + " is fixed at " + TomlText(fixed) + " now and takes no other value; remove it" + LineOf(node));
+  }
+  base::LogWarning("{}: option '{}' is fixed at {} now; remove it", origin.empty() ? "--set" : origin, fixed.key, TomlText(fixed));
+}
+
 // Collects every value of the document under its dotted name; throws for unknown tables and keys.
 void CollectLeaves(const std::string& origin, const toml::table& table, const std::string& prefix, const Sections& sections, const Known& known,
                    std::map<std::string, const toml::node*>& leaves) {
@@ -152,6 +162,10 @@ void CollectLeaves(const std::string& origin, const toml::table& table, const st
     const std::string current = sections.CurrentName(name, "");
     const bool is_option = sections.Find(current) != nullptr;
     if (!is_option && sections.IsRetired(name, origin.empty() ? "--set" : origin)) continue;
+    if (const FixedOption* fixed = sections.FindFixed(name)) {
+      TakeFixed(origin, *fixed, node);
+      continue;
+    }
     if (inner == nullptr || is_option) {
       if (!is_option) RefuseKey(origin, name, node, known);
       if (current == name) {
@@ -196,6 +210,9 @@ void ReadTomlText(const std::string& text, const std::string& origin, const Sect
     const std::string why = WhyForbidden(option);
     if (!why.empty()) throw base::UsageError(From(origin).append(name).append(why).append(LineOf(*node)));
   }
+  std::set<std::string> given;
+  for (const auto& [name, node] : leaves) given.insert(name);
+  sections.PassOn(given);
 }
 
 }  // namespace skyquilt::config

@@ -69,6 +69,10 @@ std::string TomlText(const Value& value) {
   return std::visit([](const auto* v) { return ValueText(*v); }, value);
 }
 
+std::string TomlText(const FixedOption& fixed) {
+  return std::visit([](auto value) { return ValueText(value); }, fixed.value);
+}
+
 std::string WriteToml(const Sections& sections) {
   std::ostringstream out;
   for (const Sections::Entry& entry : sections.entries()) {
@@ -77,10 +81,13 @@ std::string WriteToml(const Sections& sections) {
     out << "[" << entry.name << "]\n";
     for (const Option& option : entry.options) {
       SKYQUILT_CHECK(IsBareKey(option.key), "option key '" + option.key + "'");
+      const std::string value = TomlText(option.value);
+      const Option* inherited = sections.Inherited(entry.name + "." + option.key);
+      if (value == option.unwritten || (inherited != nullptr && value == TomlText(inherited->value))) continue;
       WriteComment(out, option.help);
       const std::string range = option.range.Text();
       if (!range.empty()) WriteComment(out, "allowed: " + range);
-      out << option.key << " = " << TomlText(option.value) << "\n";
+      out << option.key << " = " << value << "\n";
     }
   }
   return out.str();
@@ -94,6 +101,7 @@ std::map<std::string, std::string> Flatten(const Sections& sections) {
       SKYQUILT_CHECK(flat.emplace(key, TomlText(option.value)).second, "option '" + key + "' is described twice");
     }
   }
+  for (const FixedOption& fixed : sections.fixed()) flat.emplace(fixed.key, TomlText(fixed));
   return flat;
 }
 

@@ -43,7 +43,7 @@ std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double v
     for (const double value : pose.cam_from_enu.translation) add(value);
   };
   const SurfaceOptions& options = input.options;
-  for (const double value : {voxel_m, options.min_opacity, options.max_spread_voxels, options.max_angle_deg, places.agl_m}) add(value);
+  for (const double value : {voxel_m, options.min_opacity, options.max_spread_voxels, kMaxAngle_deg, places.agl_m}) add(value);
   add(options.virtual_views);
   add(options.min_views);
   for (const double value : input.info->min_enu) add(value);

@@ -38,7 +38,7 @@ DepthLimits LimitsOf(const SurfaceInput& input, double voxel_m) {
   return {.min_opacity = options.min_opacity,
           .max_spread_m = options.max_spread_voxels * voxel_m,
           .max_step_m = kMaxStepVoxels * voxel_m,
-          .max_angle_deg = options.max_angle_deg,
+          .max_angle_deg = kMaxAngle_deg,
           .min_enu = box.min_enu,
           .max_enu = box.max_enu};
 }

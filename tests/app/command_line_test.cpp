@@ -73,6 +73,11 @@ TEST(CommandLine, PresetsAreChosenByName) {
   state.set = {"train.levels=3"};
   EXPECT_EQ(state.Load({own}, {}).train.levels, 3);
   EXPECT_EQ(state.LoadOver(state.Load({own}, {})).train.levels, 3);
+  // The context follows a preset, and --set after it.
+  state.config = "fast";
+  state.set = {"train.features=2"};
+  EXPECT_EQ(state.Load({}, {}).context.levels, 6);
+  EXPECT_EQ(state.Load({}, {}).context.features, 2);
   std::filesystem::remove(own);
 }
 

@@ -92,6 +92,28 @@ TEST(OptionRanges, ContainTheDefaults) {
   EXPECT_NO_THROW(settings.Check());
 }
 
+// An option that no text, preset or bench names has no user: it is a constant.
+TEST(OptionRanges, EveryOptionStandsInADocumentAPresetOrABench) {
+  std::string texts = base::ReadFile("configs/fast.toml") + base::ReadFile("configs/quality.toml") + base::ReadFile("tests/simulate/faults.toml");
+  for (const char* folder : {"docs", "bench", "app/commands"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      const std::string ending = entry.path().extension().string();
+      if (ending == ".md" || ending == ".cpp") texts += base::ReadFile(entry.path());
+    }
+  }
+  std::set<std::string> words;
+  constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  for (size_t at = texts.find_first_of(kLetters); at != std::string::npos; at = texts.find_first_of(kLetters, at)) {
+    const size_t end = std::min(texts.find_first_not_of(kLetters, at), texts.size());
+    words.insert(texts.substr(at, end - at));
+    at = end;
+  }
+  coordinator::Settings settings;
+  for (const Described& one : AllOptions(settings)) {
+    EXPECT_TRUE(words.contains(one.key.substr(one.key.find('.') + 1))) << one.key;
+  }
+}
+
 TEST(OptionRanges, AreTheSameInConfigurationFilesAndHelp) {
   coordinator::Settings settings;
   const std::vector<Described> all = AllOptions(settings);
@@ -109,7 +131,7 @@ TEST(OptionRanges, AreTheSameInConfigurationFilesAndHelp) {
   for (const Described& one : all) {
     const std::string range = one.option.range.Text();
     const std::string key = one.key.substr(one.key.find('.') + 1);
-    if (range.empty() || other_units.contains(one.key)) continue;
+    if (range.empty() || other_units.contains(one.key) || !one.option.unwritten.empty()) continue;
     const std::string lines = fmt::format("# allowed: {}\n{} = {}\n", range, key, config::TomlText(one.option.value));
     EXPECT_NE(defaults.find(lines), std::string::npos) << one.key;
     for (size_t at = help.find("[" + one.key + "]"); at != std::string::npos; at = help.find("[" + one.key + "]", at + 1)) {

@@ -50,6 +50,36 @@ TEST(Settings, RemovedOptionsAreStillAccepted) {
   EXPECT_EQ(LoadSettings({folder / "old.toml"}, {}).Flat(), defaults.Flat());
 }
 
+TEST(Settings, OptionsThatAreConstantsNowAreAcceptedWithTheirValues) {
+  coordinator::Settings defaults;
+  const TemporaryFolder folder;
+  base::WriteFileAtomically(folder / "old.toml",
+                            "[partition]\nmargin_fraction = 0.06\nmin_margin_m = 2.0\nz_margin_below_m = 1.5\nz_margin_above_m = 1.5\n"
+                            "parameter_budget = 0.0\n[context]\npyramid_until = 1.0\nnetwork_l2 = 1e-06\n[train]\npyramid_until = 1.0\n"
+                            "network_l2 = 1e-06\n[products]\npreview_width = 1600\n[surface]\nmax_angle_deg = 85.0\nmax_hole_m2 = 30.0\n"
+                            "simplify_voxels = 0.5\n[buildings]\nmin_part_m2 = 15.0\nshare_yaw_m = 60.0\n");
+  EXPECT_EQ(LoadSettings({folder / "old.toml"}, {}).Flat(), defaults.Flat());
+  EXPECT_EQ(defaults.Flat().at("partition.margin_fraction"), "0.06") << "stamps and hashes of earlier versions must stay valid";
+  EXPECT_EQ(defaults.Flat().at("context.network_l2"), "1e-06");
+  const std::string message = UsageErrorOf([] { LoadSettings({}, {{"surface.simplify_voxels", "0.25"}}); });
+  EXPECT_NE(message.find("surface.simplify_voxels is fixed at 0.5 now"), std::string::npos) << message;
+}
+
+TEST(Settings, TheContextFollowsTheBlocksWhereItIsNotNamed) {
+  const TemporaryFolder folder;
+  base::WriteFileAtomically(folder / "my.toml", "[context]\nhidden = 32\n[train]\nlevels = 6\nhidden = 48\nsteps = 500\n");
+  const coordinator::Settings settings = LoadSettings({folder / "my.toml"}, {{"train.features", "2"}, {"train.hidden", "56"}});
+  EXPECT_EQ(settings.context.levels, 6);
+  EXPECT_EQ(settings.context.features, 2);
+  EXPECT_EQ(settings.context.hidden, 32);
+  EXPECT_EQ(settings.context.steps, 0) << "budgets are each field's own";
+  const std::string message = UsageErrorOf([] { LoadSettings({}, {{"train.levels", "7"}, {"train.features", "2"}}); });
+  EXPECT_NE(message.find("train.levels"), std::string::npos) << message;
+  EXPECT_EQ(message.find("context"), std::string::npos) << message;
+  base::WriteFileAtomically(folder / "written.toml", settings.Toml());
+  EXPECT_EQ(LoadSettings({folder / "written.toml"}, {}).Flat(), settings.Flat());
+}
+
 TEST(Settings, ValuesOfTheWrongTypeOrRangeAreNamed) {
   for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{{"train.levels", "many"},
                                                                                    {"train.levels", "4.5"},

@@ -165,7 +165,7 @@ TEST(BuildingsOptions, DefaultsAreAllowedAndFieldsAreNamedOnce) {
   EXPECT_NO_THROW(BuildingsOptions().Check());
   std::vector<std::string> keys;
   for (const auto& field : BuildingsOptions::Fields()) keys.push_back(field.key);
-  EXPECT_EQ(keys.size(), 16U);
+  EXPECT_EQ(keys.size(), 14U);
   std::sort(keys.begin(), keys.end());
   EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
 }

@@ -60,7 +60,7 @@ class BuildingFaults:
         for ids in ("0", "-1", str(n + 1), f"1,{n + 1}", "x", "99999999999999999999"):
             text = self.skyquilt.call("buildings", project, "--facades", ids, status=2)
             expect("--facades" in text, f"--facades {ids} is not explained:\n{text}")
-        for option in ("min_area_m2=0", "max_green=nan", "facade_gsd=0", "share_yaw_m=-1", "min_aera_m2=3"):
+        for option in ("min_area_m2=0", "max_green=nan", "facade_gsd=0", "overhang_m=-1", "share_yaw_m=30", "min_aera_m2=3"):
             text = self.skyquilt.call("buildings", project, "--set", f"buildings.{option}", status=2)
             expect(option.split("=")[0] in text, f"buildings.{option} is not explained:\n{text}")
         expect(not (project / "buildings" / "facades").exists() and made(project) == self.wanted, "refused commands changed something")

@@ -264,10 +264,6 @@ TEST(MakeBlocks, AutoSplitsUntilTablesFit) {
   options.max_log2_table_size = 15;
   const BlockSet several = MakeBlocks(FlySurvey({}), options, 400);
   EXPECT_GT(several.blocks.size(), 2U);
-  options.parameter_budget = 4.0 * 32768.0;
-  const BlockSet few = MakeBlocks(FlySurvey({}), options, 800);
-  EXPECT_LE(few.blocks.size(), 4U);
-  EXPECT_GT(few.blocks.size(), 1U);
 }
 
 TEST(MakeBlocks, VoxelsThatShareEntriesMakeTablesSmaller) {

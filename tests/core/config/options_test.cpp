@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -95,6 +96,77 @@ TEST(Toml, ARenamedOptionSetsTheNewOne) {
   ReadTomlText("[train]\nsteps = 9\nstrides = 10\n", "old.toml", all.sections);
   EXPECT_EQ(all.train.steps, 9);
   EXPECT_EQ(WriteToml(all.sections).find("strides"), std::string::npos);
+}
+
+// Like RenderOptions, after an earlier version had the options that are fixed here; one of them is worth a line only when it is set.
+struct CloudOptions {
+  double size_m = 1.0;
+  int seed = 3;
+
+  static std::vector<Field<CloudOptions>> Fields() {
+    using O = CloudOptions;
+    return {{"size_m", &O::size_m, Range{0, 9}, "of the points"}, {"seed", &O::seed, Range(), "of the colours", Written::kWhenChanged}};
+  }
+  static std::vector<FixedOption> Fixed() { return {{"radius_m", 0.06}, {"width", 1600}}; }
+  void Check(const std::string& section) const { CheckRanges(section, *this); }
+};
+
+struct Clouds {
+  CloudOptions near, far;
+  std::set<std::string> named;
+  Sections sections;
+  Clouds() {
+    sections.Add("far", far, "");
+    sections.Add("near", near, "");
+    sections.Inherit("far", "near", {"seed"}, named);
+  }
+};
+
+TEST(Toml, AFixedOptionIsAcceptedWithItsValueOnly) {
+  Clouds clouds;
+  ReadTomlText("[near]\nradius_m = 0.06\nwidth = 1600\nsize_m = 2\n", "old.toml", clouds.sections);
+  EXPECT_EQ(clouds.near.size_m, 2.0);
+  ApplyOverride({"far.radius_m", "0.06"}, clouds.sections);
+  const auto message = [&](const std::string& text) { return ErrorOf<base::UsageError>([&] { ReadTomlText(text, "old.toml", clouds.sections); }); };
+  EXPECT_EQ(message("[near]\nradius_m = 0.1\n"), "old.toml: near.radius_m is fixed at 0.06 now and takes no other value; remove it (line 2)");
+  EXPECT_NE(message("[near]\nwidth = \"wide\"\n").find("near.width is fixed at 1600 now"), std::string::npos);
+  EXPECT_NE(ErrorOf<base::UsageError>([&] { ApplyOverride({"near.width", "100"}, clouds.sections); }).find("near.width is fixed"), std::string::npos);
+  EXPECT_EQ(WriteToml(clouds.sections).find("radius_m"), std::string::npos);
+  // Results of earlier versions have the same hash.
+  EXPECT_EQ(Flatten(clouds.sections).at("near.radius_m"), "0.06");
+  EXPECT_EQ(Flatten(clouds.sections).at("far.width"), "1600");
+}
+
+TEST(Toml, AnOptionThatFewPeopleLookForIsWrittenWhenItIsSet) {
+  Clouds clouds;
+  EXPECT_EQ(WriteToml(clouds.sections).find("seed"), std::string::npos);
+  EXPECT_EQ(Flatten(clouds.sections).at("near.seed"), "3");
+  ApplyOverride({"near.seed", "4"}, clouds.sections);
+  Clouds back;
+  ReadTomlText(WriteToml(clouds.sections), "written.toml", back.sections);
+  EXPECT_EQ(back.near.seed, 4);
+  EXPECT_EQ(back.far.seed, 3);
+}
+
+TEST(Toml, AnOptionThatIsNotNamedFollowsTheOtherSection) {
+  Clouds clouds;
+  ReadTomlText("[near]\nsize_m = 2\nseed = 5\n", "one.toml", clouds.sections);
+  EXPECT_EQ(clouds.far.size_m, 2.0);
+  EXPECT_EQ(clouds.far.seed, 3) << "it is the section's own";
+  EXPECT_EQ(WriteToml(clouds.sections).find("size_m"), WriteToml(clouds.sections).rfind("size_m")) << "the inherited value is not written";
+  // In any order within a file, and before or after the other section's value.
+  ReadTomlText("[far]\nsize_m = 7\n[near]\nsize_m = 6\n", "two.toml", clouds.sections);
+  EXPECT_EQ(clouds.far.size_m, 7.0);
+  ApplyOverride({"near.size_m", "8"}, clouds.sections);
+  EXPECT_EQ(clouds.far.size_m, 7.0) << "a value that was named stays";
+  Clouds back;
+  ReadTomlText(WriteToml(clouds.sections), "written.toml", back.sections);
+  EXPECT_EQ(Flatten(back.sections), Flatten(clouds.sections));
+  // Also one that was named with the value of the other section.
+  Clouds equal;
+  ApplyOverride({"far.size_m", "1"}, equal.sections);
+  ApplyOverride({"near.size_m", "2"}, equal.sections);
+  EXPECT_EQ(equal.far.size_m, 1.0);
 }
 
 TEST(Toml, AValueOutOfRangeIsRefusedWithItsLineAndRange) {

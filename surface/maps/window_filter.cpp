@@ -6,7 +6,6 @@
 
 #include "surface/maps/height_raster.h"
 
-
 namespace skyquilt::surface {
 namespace {
 

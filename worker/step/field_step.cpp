@@ -106,7 +106,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     }
   });
   auto at = PhaseTimes::Clock::now();
-  const LossSums sums = SumResults(&result);
+  const LossSums sums = SumResults(ray_share, &result);
   result.finite = SumNetworkGradients(state) && result.finite && std::isfinite(result.loss);
   if (!result.finite) {
     std::fill(state.network_gradient.begin(), state.network_gradient.end(), 0.0F);
@@ -127,7 +127,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   return result;
 }
 
-LossSums FieldStep::SumResults(StepResult* result) {
+LossSums FieldStep::SumResults(float ray_share, StepResult* result) {
   LossSums sums;
   gradient_segments_.clear();
   for (const PacketResult& p : results_) {
@@ -146,7 +146,6 @@ LossSums FieldStep::SumResults(StepResult* result) {
   for (const SurfacePoints& points : surface_points_) {
     if (points.count > 0) gradient_segments_.push_back(points.Gradient());
   }
-  const float ray_share = 1.0F / static_cast<float>(std::max(1, result->n_rays));
   result->loss = sums.loss * static_cast<double>(ray_share);
   result->squared_error = sums.squared_error / (3.0 * static_cast<double>(std::max<int64_t>(1, sums.color_rays)));
   return sums;

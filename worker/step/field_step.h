@@ -74,7 +74,7 @@ class FieldStep {
 
   void Encode(const RayBatch& batch, std::span<const float> grid);
   // Sums the packets' results in their order and lists their gradients.
-  LossSums SumResults(StepResult* result);
+  LossSums SumResults(float ray_share, StepResult* result);
   // Shortens the networks' gradient to at most twice its running norm, which follows.
   static void ClipNetworkGradient(field::OptimizerState& state, StepResult& result);
   // Adds the slots' gradients to the state's; false when one is not finite.

@@ -33,10 +33,9 @@ struct PacketStep {
   field::NetworkWeights weights;
   std::span<const float> grid;  // parameters of the encoding
   float* features;              // at Packet::features; overwritten by their gradient
-  // Not used by Infer.
-  float* observed = nullptr;  // per sample: tau of a marching step, 0 where no light arrives
-  float ray_share = 0.0F;     // 1 / rays of the batch
-  double distortion = 0.0;    // weight of the distortion loss
+  float* observed = nullptr;    // per sample: tau of a marching step, 0 where no light arrives; not used by Infer
+  float ray_share = 0.0F;       // 1 / rays of the batch
+  double distortion = 0.0;      // weight of the distortion loss
   StepPriors priors = {};
   std::array<float, 3>* gain_gradients = nullptr;  // per ray, by its log gains; null without a learner
   struct SurfacePoints* surface_points = nullptr;  // per packet, written; null without losses of normals

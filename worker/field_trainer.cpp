@@ -31,15 +31,6 @@ TrainOptions WithoutPyramid(TrainOptions options) {
   return options;
 }
 
-// Without what a prior needs, it is off.
-FieldPriors WithoutImpossible(FieldPriors priors) {
-  PriorOptions& o = priors.options;
-  if (priors.segments == nullptr) o.planar = o.upright = o.normals = o.orientation = 0.0;
-  if (priors.points == nullptr || priors.points->Empty()) o.points = 0.0;
-  if (priors.planes == nullptr || priors.planes->Empty()) o.planes = 0.0;
-  return priors;
-}
-
 }  // namespace
 
 FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options,
@@ -55,7 +46,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       drawer_(target, source, seed, NeighboursOf(luminance.luminance), options.stratified, threads, times_),
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
-      priors_(WithoutImpossible(priors)),
+      priors_(priors),
       source_(source),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / 24)) {
   target.parameters.Allocate(field_);
@@ -93,28 +84,9 @@ void FieldTrainer::MeasureFootprints() {
 
 StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   const PhotoPyramid pyramid(options_.pyramid, options_.pyramid_start, kPyramidUntil, progress);
-  const double strength = priors_.options.Strength(progress);
-  const double point_strength = priors_.options.PointStrength(progress);
-  PriorRays prior_rays;
-  if (strength > 0.0 && priors_.options.Segments()) {
-    prior_rays.segments = priors_.segments;
-    prior_rays.segment_share = priors_.options.segment_share;
-  }
-  if (point_strength > 0.0 && priors_.options.points > 0.0) {
-    prior_rays.points = priors_.points;
-    prior_rays.point_share = priors_.options.point_share;
-  }
-  drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), pyramid, prior_rays, &batch_);
   StepOptions step;
-  step.priors = {.planar = strength * priors_.options.planar,
-                 .upright = strength * priors_.options.upright,
-                 .planes = strength * priors_.options.planes,
-                 .points = point_strength * priors_.options.points,
-                 .normals = strength * priors_.options.normals,
-                 .orientation = strength * priors_.options.orientation,
-                 .voxel_m = target_.step_m / options_.step_voxels,
-                 .known_planes = priors_.planes,
-                 .known_directions = priors_.directions};
+  step.priors = priors_.StepAt(progress, target_.step_m / options_.step_voxels);
+  drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), pyramid, priors_.RaysFor(step.priors), &batch_);
   const double warm_up = std::min(1.0, static_cast<double>(state_.step + 1) / kWarmUpSteps);
   const double decay = std::pow(options_.final_learning_rate_share, std::clamp((progress - kDecayFrom) / (1.0 - kDecayFrom), 0.0, 1.0));
   step.learning_rate = options_.learning_rate * learning_rate_scale * warm_up * decay;

@@ -9,24 +9,13 @@
 #include "core/base/thread_pool.h"
 #include "core/field/optimizer.h"
 #include "core/render/trained_field.h"
-#include "worker/planes/point_planes.h"
-#include "worker/prior_options.h"
-#include "worker/rays/photo_segments.h"
 #include "worker/rays/ray_batch.h"
 #include "worker/rays/ray_source.h"
 #include "worker/step/field_step.h"
+#include "worker/step/step_priors.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::worker {
-
-// What a field is taught beside the photos. Nothing by default.
-struct FieldPriors {
-  PriorOptions options;                                    // weights of what is not given count as 0
-  const PhotoSegments* segments = nullptr;                 // of the field's photos; needed for options.Segments()
-  const DepthPoints* points = nullptr;                     // of the field; needed for options.points > 0; may be empty
-  const PointPlanes* planes = nullptr;                     // of the field; needed for options.Planes(); may be empty
-  const survey::DominantDirections* directions = nullptr;  // of buildings, for options.upright; may be null
-};
 
 class FieldTrainer {
  public:
@@ -44,7 +33,7 @@ class FieldTrainer {
 
   // Sets the target's range of footprints from rays of its photos. Call it when the occupancy has its initial state.
   void MeasureFootprints();
-  // One step. progress: of the budget, 0..1, sets learning rate, distortion loss and levels of the pyramid.
+  // One step. progress: of the budget, 0..1, sets learning rate, distortion loss, priors and levels of the pyramid.
   StepResult Step(double progress, double learning_rate_scale);
   // Samples the density of some free cells, then decides which cells are occupied. grow: also marks the cells around surfaces as occupied.
   void UpdateOccupancy(bool grow);

@@ -30,7 +30,7 @@ FieldStep::FieldStep(const render::TrainedField& target, const field::HashField&
       threads_(threads),
       times_(times),
       optimizer_(field, threads),
-      shared_{target, field, context, weights_, luminance_, state_, luminance.controls_mean},
+      shared_{target, field, context, luminance_, state_, luminance.controls_mean},
       read_ahead_(static_cast<size_t>(threads.size())) {
   for (int i = 0; i < threads.size(); ++i) trainers_.push_back(std::make_unique<PacketTrainer>(shared_, times, i));
 }
@@ -78,7 +78,6 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   StepResult result;
   result.n_rays = static_cast<int>(batch.rays.size());
   result.n_samples = batch.n_samples;
-  weights_ = field_.Prepare(parameters.networks);
   Encode(batch, parameters.grid);
   Grow(observed_, static_cast<size_t>(batch.Size()));
   const size_t n_packets = batch.packets.size();
@@ -89,15 +88,16 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   slot_gradients_.assign(network_size * kGradientSlots, 0.0F);
   gain_gradients_.assign(learner != nullptr ? batch.rays.size() : 0, {0.0F, 0.0F, 0.0F});
   const float ray_share = 1.0F / static_cast<float>(std::max(1, result.n_rays));
-  const PacketStep step{batch,
-                        features_.data(),
-                        observed_.data(),
-                        ray_share,
-                        options.distortion,
-                        options.priors,
-                        gain_gradients_.empty() ? nullptr : gain_gradients_.data(),
-                        parameters.grid,
-                        options.priors.Normals() ? surface_points_.data() : nullptr};
+  const PacketStep step{.batch = batch,
+                        .weights = field_.Prepare(parameters.networks),
+                        .grid = parameters.grid,
+                        .features = features_.data(),
+                        .observed = observed_.data(),
+                        .ray_share = ray_share,
+                        .distortion = options.distortion,
+                        .priors = options.priors,
+                        .gain_gradients = gain_gradients_.empty() ? nullptr : gain_gradients_.data(),
+                        .surface_points = options.priors.Normals() ? surface_points_.data() : nullptr};
   threads_.ParallelFor(kGradientSlots, [&](int64_t slot, int thread) {
     PacketTrainer& trainer = *trainers_[static_cast<size_t>(thread)];
     float* network_gradient = slot_gradients_.data() + static_cast<size_t>(slot) * network_size;
@@ -106,7 +106,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     }
   });
   auto at = PhaseTimes::Clock::now();
-  const LossSums sums = SumResults(batch, &result);
+  const LossSums sums = SumResults(ray_share, &result);
   result.finite = SumNetworkGradients(state) && result.finite && std::isfinite(result.loss);
   if (!result.finite) {
     std::fill(state.network_gradient.begin(), state.network_gradient.end(), 0.0F);
@@ -127,12 +127,11 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   return result;
 }
 
-LossSums FieldStep::SumResults(const RayBatch& batch, StepResult* result) {
+LossSums FieldStep::SumResults(float ray_share, StepResult* result) {
   LossSums sums;
   gradient_segments_.clear();
-  for (size_t k = 0; k < results_.size(); ++k) {
-    const PacketResult& p = results_[k];
-    result->n_live += p.live;
+  for (const PacketResult& p : results_) {
+    result->n_live += p.gradient.count;
     result->finite = result->finite && p.finite;
     result->saturated.densities += p.saturated.densities;
     result->saturated.colors += p.saturated.colors;
@@ -142,13 +141,11 @@ LossSums FieldStep::SumResults(const RayBatch& batch, StepResult* result) {
     sums.solid_rays += p.sums.solid_rays;
     sums.shown += p.sums.shown;
     sums.log_share += p.sums.log_share;
-    const Packet& packet = batch.packets[k];
-    gradient_segments_.push_back({packet.begin, p.live, features_.data() + packet.features, packet.stride});
+    gradient_segments_.push_back(p.gradient);
   }
   for (const SurfacePoints& points : surface_points_) {
     if (points.count > 0) gradient_segments_.push_back(points.Gradient());
   }
-  const float ray_share = 1.0F / static_cast<float>(std::max(1, result->n_rays));
   result->loss = sums.loss * static_cast<double>(ray_share);
   result->squared_error = sums.squared_error / (3.0 * static_cast<double>(std::max<int64_t>(1, sums.color_rays)));
   return sums;
@@ -187,9 +184,8 @@ void FieldStep::UpdateRunningMeans(const LossSums& sums) {
 }
 
 void FieldStep::Infer(RayBatch& batch, const field::Parameters& parameters) {
-  weights_ = field_.Prepare(parameters.networks);
   Encode(batch, parameters.grid);
-  const PacketStep step{batch, features_.data(), nullptr, 0.0F, 0.0, {}, nullptr, {}, nullptr};
+  const PacketStep step{.batch = batch, .weights = field_.Prepare(parameters.networks), .grid = parameters.grid, .features = features_.data()};
   threads_.ParallelFor(static_cast<int64_t>(batch.packets.size()),
                        [&](int64_t k, int thread) { trainers_[static_cast<size_t>(thread)]->Infer(step, batch.packets[static_cast<size_t>(k)]); });
 }

@@ -73,8 +73,8 @@ class FieldStep {
   static constexpr size_t kGradientSlots = 16;
 
   void Encode(const RayBatch& batch, std::span<const float> grid);
-  // Sums the packets' results in their order.
-  LossSums SumResults(const RayBatch& batch, StepResult* result);
+  // Sums the packets' results in their order and lists their gradients.
+  LossSums SumResults(float ray_share, StepResult* result);
   // Shortens the networks' gradient to at most twice its running norm, which follows.
   static void ClipNetworkGradient(field::OptimizerState& state, StepResult& result);
   // Adds the slots' gradients to the state's; false when one is not finite.
@@ -87,7 +87,6 @@ class FieldStep {
   base::ThreadPool& threads_;
   PhaseTimes& times_;
   field::Optimizer optimizer_;
-  field::NetworkWeights weights_;
   PacketShared shared_;
   std::vector<std::unique_ptr<PacketTrainer>> trainers_;  // per thread
   std::vector<float> read_ahead_;                         // per thread

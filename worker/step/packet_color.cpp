@@ -16,7 +16,7 @@ void PacketColor::Forward(PacketSamples& s) const {
     shared_.field.EncodeDirection(direction.data(), s.views[k].count, sh + s.views[k].begin, s.a.stride);
   }
   s.ZeroPadding(sh, shared_.field.ColorInputRows() - field::kGeometryRows, s.a.stride);
-  shared_.field.Color(shared_.weights, s.a.color_in, s.a.stride, s.Padded(), s.a.color_hidden, s.a.stride, s.a.color_raw, s.a.stride);
+  shared_.field.Color(s.step->weights, s.a.color_in, s.a.stride, s.Padded(), s.a.color_hidden, s.a.stride, s.a.color_raw, s.a.stride);
   const auto range = static_cast<float>(shared_.target.config.color_range);
   for (size_t c = 0; c < 3; ++c) kernel::Sigmoid(s.a.color_raw + c * s.a.stride, s.Padded(), range, s.rgb.data() + c * s.a.stride);
 }

@@ -43,7 +43,7 @@ void PacketConcealed::Add(PacketSamples& s, float* network_gradient, LossSums& s
     Scatter(s, view, composed, gradient);
   }
   const size_t luminance = 3 * s.a.stride;
-  convolution_.Backward(s.a.color_raw + luminance, shared_.weights.luminance, omega_gradient_.data(), s.a.color_gradient + luminance,
+  convolution_.Backward(s.a.color_raw + luminance, s.step->weights.luminance, omega_gradient_.data(), s.a.color_gradient + luminance,
                         network_gradient + shared_.field.LuminanceOffset());
 }
 
@@ -52,7 +52,7 @@ void PacketConcealed::Compose(PacketSamples& s) {
   rays_.clear();
   for (size_t k = 0; k < s.views.size(); ++k) rays_.push_back({s.views[k].begin, s.views[k].count, s.Ray(k).patch});
   convolution_.Pair(rays_, s.Distances(), s.live);
-  convolution_.Forward(s.a.color_raw + 3 * stride, shared_.weights.luminance);
+  convolution_.Forward(s.a.color_raw + 3 * stride, s.step->weights.luminance);
   for (auto* v : {&share_, &share_gradient_, &omega_gradient_}) Grow(*v, live);
   for (auto* v : {&light_, &light_slope_}) Grow(*v, 3 * stride);
   for (size_t c = 0; c < 3; ++c) {

@@ -20,7 +20,7 @@ void PacketDensity::Forward(PacketSamples& s) {
   Grow(keep_, s.a.stride);
   float* features = s.Features();
   s.ZeroPadding(features, shared_.field.FeatureRows(), s.packet->stride);
-  shared_.field.Density(shared_.weights, features, s.packet->stride, s.Padded(), s.a.density_hidden, s.a.stride, s.a.geometry(), s.a.stride);
+  shared_.field.Density(s.step->weights, features, s.packet->stride, s.Padded(), s.a.density_hidden, s.a.stride, s.a.geometry(), s.a.stride);
   kernel::ExpShifted(s.a.geometry(), s.Padded(), static_cast<float>(shared_.target.config.density_bias), kMaxLogTau, depth_.data());
 }
 

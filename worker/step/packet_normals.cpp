@@ -36,17 +36,17 @@ const float* PacketNormals::Add(const PacketSamples& s, const PacketEnds& ends, 
   points.Reset(n, field);
   if (n == 0) return nullptr;
   PlacePoints(s, points);
-  field.DensityGradient(shared_.weights, s.step->grid, points.at, n, slope_);
+  field.DensityGradient(s.step->weights, s.step->grid, points.at, n, slope_);
   const bool head = field.config().normal_head && s.step->priors.normals > 0.0;
   if (head) {
     const auto floats = static_cast<size_t>(field::kNormalRows) * s.a.stride;
     Grow(predicted_, floats);
     predicted_gradient_.assign(floats, 0.0F);
-    field.PredictNormals(shared_.weights, s.a.geometry(), s.a.stride, s.Padded(), predicted_.data(), s.a.stride);
+    field.PredictNormals(s.step->weights, s.a.geometry(), s.a.stride, s.Padded(), predicted_.data(), s.a.stride);
   }
   slope_along_.assign(3 * slope_.stride, 0.0F);
   for (size_t i = 0; i < end_views_.size(); ++i) AddLoss(s, i, head, sums);
-  field.DensityGradientBackward(shared_.weights, s.step->grid, points.at, n, slope_along_.data(), slope_, network_gradient);
+  field.DensityGradientBackward(s.step->weights, s.step->grid, points.at, n, slope_along_.data(), slope_, network_gradient);
   const auto keep_rows = [&](const float* from, size_t rows, float* to) {
     for (size_t row = 0; row < rows; ++row) std::copy_n(from + row * slope_.stride, n, to + row * points.stride);
   };
@@ -54,7 +54,7 @@ const float* PacketNormals::Add(const PacketSamples& s, const PacketEnds& ends, 
   keep_rows(slope_.feature_gradient, static_cast<size_t>(field.encoding().OutputRows()), points.feature_gradient.data());
   if (!head) return nullptr;
   Grow(geometry_gradient_, static_cast<size_t>(field::kGeometryRows) * s.a.stride);
-  field.NormalHeadBackward(shared_.weights, predicted_gradient_.data(), s.a.stride, s.a.geometry(), s.a.stride, s.Padded(), geometry_gradient_.data(),
+  field.NormalHeadBackward(s.step->weights, predicted_gradient_.data(), s.a.stride, s.a.geometry(), s.a.stride, s.Padded(), geometry_gradient_.data(),
                            network_gradient);
   return geometry_gradient_.data();
 }

@@ -22,7 +22,6 @@ struct PacketShared {
   const render::TrainedField& target;  // map, step and colour range; not its parameters
   const field::HashField& field;
   const render::TrainedField* context;  // not trained; may be null
-  const field::NetworkWeights& weights;
   const brightness::Luminance& luminance;
   const brightness::LuminanceState& means;
   bool controls_mean;  // LuminancePlan::controls_mean
@@ -30,15 +29,16 @@ struct PacketShared {
 
 // Used by all packets of one step. Each packet writes only to its own ranges of the arrays.
 struct PacketStep {
-  RayBatch& batch;    // x, y, z and t of hidden samples are overwritten
-  float* features;    // at Packet::features; overwritten by their gradient
-  float* observed;    // per sample: tau of a marching step, 0 where no light arrives; not used by Infer
-  float ray_share;    // 1 / rays of the batch
-  double distortion;  // weight of the distortion loss
-  StepPriors priors;
-  std::array<float, 3>* gain_gradients;  // per ray, by its log gains; null without a learner
-  std::span<const float> grid;           // parameters of the encoding
-  struct SurfacePoints* surface_points;  // per packet, written; null without losses of normals
+  RayBatch& batch;  // x, y, z, sharpness and t of hidden samples are overwritten
+  field::NetworkWeights weights;
+  std::span<const float> grid;  // parameters of the encoding
+  float* features;              // at Packet::features; overwritten by their gradient
+  float* observed = nullptr;    // per sample: tau of a marching step, 0 where no light arrives; not used by Infer
+  float ray_share = 0.0F;       // 1 / rays of the batch
+  double distortion = 0.0;      // weight of the distortion loss
+  StepPriors priors = {};
+  std::array<float, 3>* gain_gradients = nullptr;  // per ray, by its log gains; null without a learner
+  struct SurfacePoints* surface_points = nullptr;  // per packet, written; null without losses of normals
 };
 
 struct PacketSamples {

@@ -35,7 +35,7 @@ PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, 
   if (context_) context_->Render(samples_);
   at = times_.Add(thread_, Phase::kContext, at);
   PacketResult result;
-  result.live = samples_.live;
+  result.gradient = {packet.begin, samples_.live, samples_.Features(), packet.stride};
   if (concealed_) concealed_->Add(samples_, network_gradient, result.sums);
   if (losses_) losses_->Add(samples_, ends_ ? &*ends_ : nullptr, result.sums);
   result.saturated = {PacketDensity::FinishGradient(samples_), color_.FinishGradient(samples_)};
@@ -47,7 +47,7 @@ PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, 
                     kernel::AllFinite(points.along.data(), static_cast<int64_t>(points.along.size()));
   }
   at = times_.Add(thread_, Phase::kCompose, at);
-  if (result.live > 0) result.finite = Backward(network_gradient, more_geometry_gradient) && result.finite;
+  if (samples_.live > 0) result.finite = Backward(network_gradient, more_geometry_gradient) && result.finite;
   times_.Add(thread_, Phase::kBackward, at);
   return result;
 }
@@ -65,7 +65,7 @@ void PacketTrainer::Infer(const PacketStep& step, const Packet& packet) {
 bool PacketTrainer::Backward(float* network_gradient, const float* more_geometry_gradient) {
   float* features = samples_.Features();
   const size_t stride = samples_.packet->stride;
-  shared_.field.Backward(shared_.weights, samples_.a, features, stride, samples_.Padded(), network_gradient, more_geometry_gradient);
+  shared_.field.Backward(samples_.step->weights, samples_.a, features, stride, samples_.Padded(), network_gradient, more_geometry_gradient);
   bool finite = true;
   for (int row = 0; row < shared_.field.encoding().OutputRows(); ++row) {
     finite = finite && kernel::AllFinite(features + static_cast<size_t>(row) * stride, samples_.live);

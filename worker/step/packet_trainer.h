@@ -10,6 +10,7 @@
 
 #include <optional>
 
+#include "core/field/optimizer.h"
 #include "worker/phase_times.h"
 #include "worker/step/packet_color.h"
 #include "worker/step/packet_concealed.h"
@@ -30,8 +31,8 @@ struct SaturatedCounts {
 struct PacketResult {
   LossSums sums;
   SaturatedCounts saturated;
-  int64_t live = 0;    // samples that light reaches; they are moved to the front
-  bool finite = true;  // whether the features' gradient is finite
+  field::FeatureGradient gradient;  // of the samples that light reaches, which are moved to the packet's front
+  bool finite = true;               // whether it and that of the surface points are finite
 };
 
 class PacketTrainer {

@@ -1,11 +1,14 @@
-// The priors of one step: their weights and what is known of the surface.
+// What a field is taught beside the photos, and which part of it applies to one step.
 #pragma once
 
 #include "core/survey/directions.h"
 #include "worker/planes/point_planes.h"
+#include "worker/prior_options.h"
+#include "worker/rays/ray_batch.h"
 
 namespace skyquilt::worker {
 
+// The priors of one step: their weights and what is known of the surface.
 struct StepPriors {
   // Relative to the photo loss; 0: off. See PriorOptions.
   double planar = 0.0, upright = 0.0, planes = 0.0, points = 0.0, normals = 0.0, orientation = 0.0;
@@ -16,8 +19,21 @@ struct StepPriors {
   bool Segments() const { return planar > 0.0 || upright > 0.0; }
   bool Normals() const { return normals > 0.0 || orientation > 0.0; }
   // Whether it matters where rays end.
-  bool Ends() const { return Segments() || planes > 0.0 || Normals(); }
-  bool Distances() const { return Ends() || points > 0.0; }
+  bool Distances() const { return Segments() || planes > 0.0 || points > 0.0 || Normals(); }
+};
+
+// Nothing by default. What is null or empty is not taught, whatever its weight.
+struct FieldPriors {
+  PriorOptions options;
+  const PhotoSegments* segments = nullptr;                 // of the field's photos; needed for options.Segments()
+  const DepthPoints* points = nullptr;                     // of the field; needed for options.points > 0
+  const PointPlanes* planes = nullptr;                     // of the field; needed for options.Planes()
+  const survey::DominantDirections* directions = nullptr;  // of buildings, for options.upright
+
+  // progress: of the budget, 0..1. voxel_m: finest voxel of the field.
+  StepPriors StepAt(double progress, double voxel_m) const;
+  // The rays that the losses of such a step need.
+  PriorRays RaysFor(const StepPriors& step) const;
 };
 
 // Where a ray ends, by its compositing weights.

@@ -67,7 +67,7 @@ Plan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m
   while (true) {
     Plan plan{FuseOptionsOf(input.options, voxel), {}};
     try {
-      plan.pieces = PlanPieces(views, BoxOf(*input.info, voxel), plan.fuse, input.memory_bytes, threads);
+      plan.pieces = PlanPieces(views.All(), BoxOf(*input.info, voxel), plan.fuse, input.memory_bytes, threads);
       if (voxel > voxel_m) {
         base::LogWarning(
             "the surface is fused in voxels of {:.3g} m instead of {:.3g} m, because a piece of it would not fit into the memory limit; a "
@@ -133,7 +133,7 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
     const std::filesystem::path file = PieceFile(input, plan.fuse.voxel_m, piece);
     std::vector<MeshTile> tiles;
     if (!LoadPiece(file, &tiles)) {
-      tiles = SplitAlongLattice(FusePiece(views, piece, plan.fuse, threads), kTileVoxels);
+      tiles = SplitAlongLattice(FusePiece(views.All(), piece, plan.fuse, threads), kTileVoxels);
       CutToBoundary(input, &tiles);
       SimplifyTiles(&tiles, kSimplifyVoxels * plan.fuse.voxel_m, threads);
       SaveMeshTiles(tiles, file);

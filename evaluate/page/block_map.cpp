@@ -6,7 +6,7 @@
 #include "evaluate/control/tag_positions.h"
 #include "evaluate/page/drawn_map.h"
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 
 namespace skyquilt::evaluate::page {
 

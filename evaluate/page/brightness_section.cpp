@@ -9,7 +9,7 @@
 #include "core/page/figure.h"
 #include "core/page/plot_frame.h"
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 #include "evaluate/page/time_axis.h"
 
 namespace skyquilt::evaluate::page {

@@ -1,4 +1,4 @@
-// Parts of the report's section on buildings; HTML. Texts are escaped here.
+// The report's section on buildings and its parts; HTML. Texts are escaped here.
 #pragma once
 
 #include <string>
@@ -8,6 +8,9 @@
 #include "evaluate/page/report_page.h"
 
 namespace skyquilt::evaluate::page {
+
+// The found buildings, and their scores. Empty when none were searched.
+std::string BuildingsSection(const ReportInput& input);
 
 // Footprints coloured by height, north up; outlines that were missed and buildings that were invented are marked when the truth is known.
 std::string BuildingsMap(const ReportInput& input);

@@ -8,7 +8,6 @@
 
 #include "evaluate/control/control_summary.h"
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
 
 namespace skyquilt::evaluate::page {
 

@@ -1,13 +1,14 @@
-// Parts of the report's section on control points; HTML. Labels and names of photos are escaped here.
+// The report's section on control and check points and its parts; HTML. Labels and names of photos are escaped here.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "core/survey/survey.h"
-#include "evaluate/control/control_pictures.h"
+#include "evaluate/page/report_page.h"
 
 namespace skyquilt::evaluate::page {
+
+std::string ControlSection(const ReportInput& input);  // empty without any
 
 // Points with their errors as arrows and rings, over the tracks of the cameras. Empty when no point has an error.
 std::string ControlMap(const survey::Survey& survey);

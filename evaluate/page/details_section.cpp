@@ -4,7 +4,7 @@
 
 #include "core/base/progress.h"
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 
 namespace skyquilt::evaluate::page {
 

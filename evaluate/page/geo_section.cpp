@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
 
 namespace skyquilt::evaluate::page {
 

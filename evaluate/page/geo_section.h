@@ -1,11 +1,13 @@
-// Parts of the report's geo-reference section; HTML. Photo names and other texts of the survey are escaped here.
+// The report's geo-reference section and its parts; HTML. Photo names and other texts of the survey are escaped here.
 #pragma once
 
 #include <string>
 
-#include "core/survey/survey.h"
+#include "evaluate/page/report_page.h"
 
 namespace skyquilt::evaluate::page {
+
+std::string GeoSection(const ReportInput& input);  // how the survey was placed on Earth
 
 // Simulated surveys: nothing had to be fitted.
 bool FrameIsExact(const survey::GeoFit& fit);

@@ -2,7 +2,7 @@
 
 #include "core/base/text.h"
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 
 namespace skyquilt::evaluate::page {
 

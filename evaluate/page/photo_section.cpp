@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 
 namespace skyquilt::evaluate::page {
 

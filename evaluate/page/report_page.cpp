@@ -9,7 +9,11 @@
 #include "core/base/errors.h"
 #include "core/page/curve_chart.h"
 #include "core/page/page_frame.h"
+#include "evaluate/page/buildings_section.h"
+#include "evaluate/page/control_section.h"
+#include "evaluate/page/geo_section.h"
 #include "evaluate/page/page_parts.h"
+#include "evaluate/page/sections.h"
 
 namespace skyquilt::evaluate::page {
 

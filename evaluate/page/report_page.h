@@ -51,20 +51,4 @@ struct ReportInput {
 
 std::string BuildReportPage(const ReportInput& input);
 
-// Parts of the page, each a <section> or a piece of one.
-std::string SummarySection(const ReportInput& input);  // the key figures of the first screen
-std::string WarningsBanner(const metrics::Metrics& metrics);
-std::string BlockMapSvg(const ReportInput& input);
-std::string PhotoSection(const ReportInput& input);
-std::string SurfaceSection(const ReportInput& input);     // what was made of the scene's surface, and its scores; empty without a surface
-std::string BuildingsSection(const ReportInput& input);   // the found buildings, and their scores; empty when none were searched
-std::string GeoSection(const ReportInput& input);         // how the survey was placed on Earth; see geo_section.h
-std::string ControlSection(const ReportInput& input);     // control and check points, see control_section.h; empty without any
-std::string InputSection(const ReportInput& input);       // what the photo folder had; empty when nothing in it is remarkable
-std::string DetailsSection(const ReportInput& input);     // every figure and its meaning
-std::string ClassTable(const metrics::Metrics& metrics);  // empty without true classes
-std::string MethodSection(const ReportInput& input);
-std::string BrightnessSection(const ReportInput& input);  // empty without brightness
-std::string BlockTable(const ReportInput& input);
-
 }  // namespace skyquilt::evaluate::page

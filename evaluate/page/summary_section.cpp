@@ -7,7 +7,7 @@
 #include "evaluate/control/control_summary.h"
 #include "evaluate/page/geo_section.h"
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 
 namespace skyquilt::evaluate::page {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 #include "evaluate/surface/surface_scores.h"
 
 namespace skyquilt::evaluate::page {

@@ -15,9 +15,9 @@
 #include "prepare/georeference/fit_report.h"
 #include "prepare/georeference/height_bias.h"
 #include "prepare/georeference/levelled_fit.h"
-#include "prepare/georeference/photo_column.h"
 #include "prepare/georeference/place_adjustment.h"
 #include "prepare/georeference/place_problems.h"
+#include "prepare/georeference/tags/photo_column.h"
 #include "prepare/georeference/tags/tags.h"
 #include "prepare/georeference/tags/track.h"
 
@@ -248,7 +248,7 @@ std::optional<survey::Problem> CoordinateProblem(const TaggedFlight& flight, con
 bool LeavesNorthOpen(const std::vector<input::PreparedPhoto>& photos, const Gravity& gravity, const Georeference& result) {
   constexpr double kOpen_deg = 10.0;
   if (result.ok && result.fit.accuracy.yaw_deg <= kOpen_deg) return false;
-  return TagsFormColumn(photos) && CamerasAboveOneAnother(photos, gravity);
+  return TagsFormColumn(photos) && CamerasAboveOneAnother(photos, gravity.up);
 }
 
 }  // namespace
@@ -272,7 +272,7 @@ Georeference PlaceOnEarth(const std::vector<input::PreparedPhoto>& given, const 
     result.problems.push_back(
         NoPlace("too_few_tags", "only " + std::to_string(n_tagged) + " photos with a pose have a GPS tag, 4 are needed", use_tags));
   } else if (TagsAboveOneAnother(photos)) {
-    result.problems.push_back(OnePlaceProblem(photos, gravity));
+    result.problems.push_back(OnePlaceProblem(photos, gravity.up));
   } else {
     result.origin = MedianPosition(photos);
     const Track track(photos, flight_of_photo);

@@ -8,6 +8,7 @@
 
 #include "core/base/text.h"
 #include "prepare/georeference/georeference.h"
+#include "prepare/georeference/tags/photo_column.h"
 
 namespace skyquilt::prepare::georeference {
 namespace {
@@ -144,6 +145,23 @@ Problem ScaleUncertain(double scale_percent) {
 Problem NoPlace(const std::string& code, const std::string& reason, const std::string& advice) {
   return {code, fmt::format("No place on Earth: {}. The survey has a levelled local frame of unknown scale, and lengths are not metres", reason),
           advice, true};
+}
+
+Problem ColumnProblem() {
+  return NoPlace("one_column", "all photos were taken above one another, which leaves the direction of north open",
+                 "Add photos that were taken several metres to the side, such as a second column, then run the same command with --restart");
+}
+
+Problem OnePlaceProblem(const std::vector<input::PreparedPhoto>& photos, const Eigen::Vector3d& up) {
+  const bool equal = AllTagsEqual(photos);
+  // Where the tags' heights say nothing, the cameras decide: in a column even right tags would lie at one place.
+  const bool same_height = equal && JudgeHeights(photos) != HeightTags::kUnknown;
+  if (!same_height && CamerasAboveOneAnother(photos, up)) return ColumnProblem();
+  return NoPlace("equal_tags",
+                 equal ? "all GPS tags are at one place"
+                       : "all GPS tags have one latitude and longitude and differ in height alone, though the cameras were not above one another",
+                 "The tags were copied from one photo, or the receiver had no fix. Tag the photos from the flight log, then run the same command "
+                 "with --restart");
 }
 
 std::vector<Problem> TooUncertain(const survey::GeoFit& fit, bool one_line) {

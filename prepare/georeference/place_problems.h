@@ -1,6 +1,7 @@
 // Says in words what is wrong with the place of a survey, and what to do about it.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,10 @@ constexpr const char* kScaleUncertain = "scale_uncertain";
 
 // For a survey that gets a local frame: why, as a problem. `reason` is a sentence without its full stop.
 survey::Problem NoPlace(const std::string& code, const std::string& reason, const std::string& advice);
+// The same of photos above one another (tags/photo_column.h), and of tags with one latitude and longitude (TagsAboveOneAnother). `up`: unit vector in
+// the model's frame.
+survey::Problem ColumnProblem();
+survey::Problem OnePlaceProblem(const std::vector<input::PreparedPhoto>& photos, const Eigen::Vector3d& up);
 
 // Why the accuracy does not allow to claim a place; empty when it does. On one line a few tags that agree by chance pass for a fit, so there at least
 // half of the tags have to agree.

@@ -31,20 +31,16 @@ struct FuseOptions {
 // Pieces whose columns cover all surface in `whole`, none without surface, each small enough to be fused in `memory_bytes`. Only their x and y
 // extents differ; they do not overlap, and do not reach out of `whole`. Throws TooLittleMemory when a single tile needs more memory, naming how
 // much, and when `whole` has more voxels than VertexKey can tell apart; base::Interrupted.
-std::vector<LatticeBox> PlanPieces(const DepthViews& views, const LatticeBox& whole, const FuseOptions& options, double memory_bytes,
-                                   base::ThreadPool& threads);
 std::vector<LatticeBox> PlanPieces(std::span<const DepthView> views, const LatticeBox& whole, const FuseOptions& options, double memory_bytes,
                                    base::ThreadPool& threads);
 
 // The least memory, in bytes, with which PlanPieces can plan; 0 when there is no surface. For choosing larger voxels before giving up.
-double LargestTileBytes(const DepthViews& views, const LatticeBox& whole, const FuseOptions& options, base::ThreadPool& threads);
 double LargestTileBytes(std::span<const DepthView> views, const LatticeBox& whole, const FuseOptions& options, base::ThreadPool& threads);
 
 // The mesh of one piece: the quads whose lattice edge has its lowest node in the piece, cut in two triangles. Vertices at its borders have the same
 // positions, bit by bit, and the same keys as in the piece next to it: every node is fused from the same views in the same order. No edge has more
 // than two triangles; in the union of pieces the triangles around a vertex are one fan. Same bits for any number of threads.
 // Empty when no view sees it. Throws base::Interrupted.
-Mesh FusePiece(const DepthViews& views, const LatticeBox& piece, const FuseOptions& options, base::ThreadPool& threads);
 Mesh FusePiece(std::span<const DepthView> views, const LatticeBox& piece, const FuseOptions& options, base::ThreadPool& threads);
 
 }  // namespace skyquilt::surface

@@ -45,4 +45,11 @@ DepthView DepthViews::operator[](size_t view) const {
   return {poses_[view], {reinterpret_cast<const float*>(picture), n_pixels}, {picture + n_pixels * sizeof(float), n_pixels}};
 }
 
+std::vector<DepthView> DepthViews::All() const {
+  std::vector<DepthView> all;
+  all.reserve(size());
+  for (size_t view = 0; view < size(); ++view) all.push_back((*this)[view]);
+  return all;
+}
+
 }  // namespace skyquilt::surface

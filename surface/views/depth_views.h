@@ -53,6 +53,7 @@ class DepthViews {
   size_t size() const { return poses_.size(); }
   const ViewPose& pose(size_t view) const { return poses_[view]; }
   DepthView operator[](size_t view) const;
+  std::vector<DepthView> All() const;
   // Stands for everything that the pictures were rendered from.
   const std::string& key() const { return key_; }
 

@@ -106,10 +106,10 @@ class Adjuster {
   bool Adjust(double tolerance, int iterations) {
     known_.clear();
     tracks_ = ties_;
-    for (size_t i = 0; i < points_.size(); ++i) {
-      if (!points_[i].used) continue;
-      known_.push_back(points_[i].Known(marked_.TrackOfPoint(i)));
-      tracks_.push_back(marked_.TrackOfPoint(i));
+    for (const ControlState& point : points_) {
+      if (!point.used) continue;
+      known_.push_back(point.Known());
+      tracks_.push_back(point.track);
     }
     return bundle::AdjustBundle(bundle_, tracks_, Stage(tolerance, iterations), on_iteration_, shift_);
   }
@@ -147,8 +147,8 @@ class Adjuster {
     constexpr double kPriorWeight = 10.0, kLeast = 0.2, kMost = 6.0;
     std::vector<double> errors_px;
     double residuals = 0.0, unknowns = 0.0;
-    for (size_t i = 0; i < points_.size(); ++i) {
-      const uint32_t t = marked_.TrackOfPoint(i);
+    for (const ControlState& point : points_) {
+      const uint32_t t = point.track;
       if (bundle_.has_point[t] == 0) continue;
       const size_t n = errors_px.size();
       for (uint32_t e = bundle_.tracks.first[t]; e < bundle_.tracks.first[t + 1]; ++e) {
@@ -180,11 +180,11 @@ class Adjuster {
     const std::vector<char> before(first_mark, bundle_.agrees.end());
     JudgeUsedMarks(marked_, points_, marked_.MarkThreshold(kMarkThreshold));
     const bool changed = !std::equal(before.begin(), before.end(), first_mark);
-    for (size_t i = 0; i < points_.size(); ++i) {
+    for (ControlState& point : points_) {
       // Two marks make a point.
-      if (!points_[i].used || bundle_.has_point[marked_.TrackOfPoint(i)] != 0) continue;
-      points_[i].used = false;
-      points_[i].contradicts = true;
+      if (!point.used || bundle_.has_point[point.track] != 0) continue;
+      point.used = false;
+      point.contradicts = true;
     }
     PlaceUnusedPoints(marked_, points_, marked_.MarkThreshold(kMarkThreshold));
     return changed;
@@ -204,21 +204,19 @@ class Adjuster {
 
   void Evaluate(const bundle::AdjustmentAccuracy& accuracy) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    for (size_t i = 0; i < points_.size(); ++i) {
-      ControlState& point = points_[i];
+    for (ControlState& point : points_) {
       point.error_m = point.error_sigma_m = point.left_out_error_m = point.left_out_sigma_m = Vector3d::Constant(kNan);
-      const uint32_t t = marked_.TrackOfPoint(i);
-      if (bundle_.has_point[t] == 0) continue;
-      point.error_m = bundle_.point[t] - point.given;
-      const bundle::KnownPoint known = point.Known(t);
-      const std::optional<Matrix3d> covariance = accuracy.OfPoint(t, point.used ? &known : nullptr);
+      if (bundle_.has_point[point.track] == 0) continue;
+      point.error_m = bundle_.point[point.track] - point.given;
+      const bundle::KnownPoint known = point.Known();
+      const std::optional<Matrix3d> covariance = accuracy.OfPoint(point.track, point.used ? &known : nullptr);
       if (covariance) {
         const Eigen::Array3d of_point = covariance->diagonal().array(), given = point.sigma_m.array().square();
         // A point that is used has moved towards what was given.
         const Eigen::Array3d of_error = point.used ? Eigen::Array3d((given - of_point).max(0.0)) : Eigen::Array3d(given + of_point);
         point.error_sigma_m = of_error.sqrt();
         Matrix3d without;
-        const Vector3d own = bundle::KnownWeight(known, bundle_.point[t], kKnownLoss) * point.sigma_m.cwiseAbs2().cwiseInverse();
+        const Vector3d own = bundle::KnownWeight(known, bundle_.point[point.track], kKnownLoss) * point.sigma_m.cwiseAbs2().cwiseInverse();
         if (point.used && LeaveOut(point.error_m, *covariance, own, &point.left_out_error_m, &without)) {
           point.left_out_sigma_m = (without.diagonal().array() + given).sqrt();
         }
@@ -233,24 +231,25 @@ class Adjuster {
     constexpr double kLimit = 4.5;
     std::vector<double> all;
     double worst = 0.0;
-    size_t worst_point = 0, n_used = 0;
-    for (size_t i = 0; i < points_.size(); ++i) {
-      if (!points_[i].used) continue;
+    ControlState* worst_point = nullptr;
+    size_t n_used = 0;
+    for (ControlState& point : points_) {
+      if (!point.used) continue;
       ++n_used;
       for (int axis = 0; axis < 3; ++axis) {
-        const double relative = std::abs(points_[i].left_out_error_m[axis]) / points_[i].left_out_sigma_m[axis];
+        const double relative = std::abs(point.left_out_error_m[axis]) / point.left_out_sigma_m[axis];
         if (!std::isfinite(relative)) continue;
         all.push_back(relative);
         if (relative <= worst) continue;
         worst = relative;
-        worst_point = i;
+        worst_point = &point;
       }
     }
     if (n_used <= kLeastUsed || all.empty()) return false;
     const double usual = std::max(1.0, base::kMadToSigma * base::Median(all));
     if (!(worst > kLimit * usual)) return false;
-    points_[worst_point].used = false;
-    points_[worst_point].contradicts = true;
+    worst_point->used = false;
+    worst_point->contradicts = true;
     return true;
   }
 
@@ -303,18 +302,18 @@ bool LeaveOut(const Vector3d& error_m, const Matrix3d& covariance, const Vector3
 }
 
 void PlaceUnusedPoints(ControlBundle& marked, const std::vector<ControlState>& points, double threshold) {
-  for (size_t i = 0; i < points.size(); ++i) {
-    if (points[i].used) continue;
-    bundle::TriangulateTrack(marked.bundle, marked.TrackOfPoint(i), threshold);
-    bundle::RefineByMarks(marked.bundle, marked.TrackOfPoint(i));
+  for (const ControlState& point : points) {
+    if (point.used) continue;
+    bundle::TriangulateTrack(marked.bundle, point.track, threshold);
+    bundle::RefineByMarks(marked.bundle, point.track);
   }
 }
 
 void JudgeUsedMarks(ControlBundle& marked, const std::vector<ControlState>& points, double threshold) {
   bundle::BundleProblem& bundle = marked.bundle;
-  for (size_t i = 0; i < points.size(); ++i) {
-    if (!points[i].used) continue;
-    const uint32_t t = marked.TrackOfPoint(i);
+  for (const ControlState& point : points) {
+    if (!point.used) continue;
+    const uint32_t t = point.track;
     int n = 0;
     for (uint32_t e = bundle.tracks.first[t]; e < bundle.tracks.first[t + 1]; ++e) {
       const double error = bundle.Error(e, bundle.point[t]);

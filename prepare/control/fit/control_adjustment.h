@@ -2,18 +2,24 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/base/thread_pool.h"
 #include "core/geo/place_accuracy.h"
 #include "prepare/control/fit/control_bundle.h"
+#include "prepare/control/reading/control_points.h"
 
 namespace skyquilt::prepare::control {
 
 // A control or check point while the survey is fitted to it.
 struct ControlState {
+  const ControlPoint* as_read = nullptr;              // must outlive this
+  uint32_t track = 0;                                 // its own in the bundle
+  std::vector<std::optional<uint32_t>> entries;       // of its marks, see ControlBundle::mark
   Eigen::Vector3d given = Eigen::Vector3d::Zero();    // ENU metres; z is 0 without a height
   Eigen::Vector3d sigma_m = Eigen::Vector3d::Ones();  // infinite z: no height
   bool used = false;                                  // determines the result
@@ -25,7 +31,7 @@ struct ControlState {
   Eigen::Vector3d left_out_sigma_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
   bool HasHeight() const { return std::isfinite(sigma_m.z()); }
-  bundle::KnownPoint Known(uint32_t track) const { return {track, given, sigma_m}; }
+  bundle::KnownPoint Known() const { return {track, given, sigma_m}; }
 };
 
 struct ControlAdjustment {

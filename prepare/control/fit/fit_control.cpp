@@ -56,12 +56,13 @@ geo::Geodetic MiddleOfControl(const ControlPoints& control) {
   return middle;
 }
 
-std::vector<ControlState> StatesOf(const ControlPoints& control, const geo::Geodetic& origin) {
+std::vector<ControlState> StatesOf(const ControlPoints& control, const ControlBundle& marked, const geo::Geodetic& origin) {
   const geo::EnuFrame frame(origin);
   const double height_m = UsualHeight(control);
   std::vector<ControlState> states;
-  for (const ControlPoint& point : control.points) {
-    ControlState state;
+  for (size_t i = 0; i < control.points.size(); ++i) {
+    const ControlPoint& point = control.points[i];
+    ControlState state{.as_read = &point, .track = marked.TrackOfPoint(i), .entries = marked.mark[i]};
     geo::Geodetic place = point.place;
     const bool has_height = std::isfinite(place.height_m);
     if (!has_height) place.height_m = height_m;
@@ -71,7 +72,7 @@ std::vector<ControlState> StatesOf(const ControlPoints& control, const geo::Geod
       state.given.z() = 0.0;
       state.sigma_m.z() = std::numeric_limits<double>::infinity();
     }
-    states.push_back(state);
+    states.push_back(std::move(state));
   }
   return states;
 }
@@ -90,13 +91,19 @@ class Fitter {
     if (job_.otherwise && (job_.otherwise->exact || !any_control)) return Compare();
     if (!any_control) Refuse(WhyNoControl(SimilarityFailure::kTooFew, {}));
     const geo::Geodetic origin = MiddleOfControl(job_.control);
-    states_ = StatesOf(job_.control, origin);
-    std::vector<size_t> index;
-    const ControlSimilarity similarity = FitControlSimilarity(Pairs(&index));
+    states_ = StatesOf(job_.control, marked_, origin);
+    std::vector<ControlPair> pairs;
+    std::vector<ControlState*> of_pair;
+    for (ControlState& state : states_) {
+      if (state.as_read->check || bundle_.has_point[state.track] == 0) continue;
+      pairs.push_back(PairOf(state));
+      of_pair.push_back(&state);
+    }
+    const ControlSimilarity similarity = FitControlSimilarity(pairs);
     if (similarity.failure != SimilarityFailure::kNone) return WithoutControl(similarity.failure);
-    for (size_t k = 0; k < index.size(); ++k) {
-      states_[index[k]].used = similarity.agrees[k] != 0;
-      states_[index[k]].contradicts = similarity.agrees[k] == 0;
+    for (size_t k = 0; k < of_pair.size(); ++k) {
+      of_pair[k]->used = similarity.agrees[k] != 0;
+      of_pair[k]->contradicts = similarity.agrees[k] == 0;
     }
     marked_.Move(similarity.enu_from_model);
     RecoverByMarks();
@@ -129,8 +136,8 @@ class Fitter {
   [[noreturn]] void Refuse(const NoControl& why) const { throw base::InputError(job_.control.file, why.finding, why.advice); }
 
   // Metres, or units of the model, per pixel: mean over the agreeing marks.
-  double GsdOf(size_t i) const {
-    const uint32_t t = marked_.TrackOfPoint(i);
+  double GsdOf(const ControlState& state) const {
+    const uint32_t t = state.track;
     double sum = 0.0;
     int n = 0;
     for (uint32_t e = bundle_.tracks.first[t]; e < bundle_.tracks.first[t + 1]; ++e) {
@@ -143,17 +150,8 @@ class Fitter {
     return n > 0 && bundle_.has_point[t] != 0 ? sum / n : kNan;
   }
 
-  // Control points with a place in the model, and which they are.
-  std::vector<ControlPair> Pairs(std::vector<size_t>* index) const {
-    std::vector<ControlPair> pairs;
-    for (size_t i = 0; i < states_.size(); ++i) {
-      const uint32_t t = marked_.TrackOfPoint(i);
-      if (job_.control.points[i].check || bundle_.has_point[t] == 0) continue;
-      pairs.push_back({bundle_.point[t], states_[i].given, states_[i].sigma_m, GsdOf(i)});
-      index->push_back(i);
-    }
-    return pairs;
-  }
+  // For a point with a place in the model.
+  ControlPair PairOf(const ControlState& state) const { return {bundle_.point[state.track], state.given, state.sigma_m, GsdOf(state)}; }
 
   NotAdjusted WhyNotAdjusted() const {
     if (!marked_.known_lenses) return NotAdjusted::kUnknownLens;
@@ -163,10 +161,9 @@ class Fitter {
   // Three marks of which one is wrong may agree in pairs anywhere; the coordinates tell which two are right. Wrong coordinates do not agree with two
   // marks.
   void RecoverByMarks() {
-    for (size_t i = 0; i < states_.size(); ++i) {
-      ControlState& state = states_[i];
-      const uint32_t t = marked_.TrackOfPoint(i), first = bundle_.tracks.first[t], last = bundle_.tracks.first[t + 1];
-      if (job_.control.points[i].check || state.used || !state.HasHeight() || last - first < 3) continue;
+    for (ControlState& state : states_) {
+      const uint32_t t = state.track, first = bundle_.tracks.first[t], last = bundle_.tracks.first[t + 1];
+      if (state.as_read->check || state.used || !state.HasHeight() || last - first < 3) continue;
       std::vector<char> agrees(last - first, 0);
       for (uint32_t e = first; e < last; ++e) {
         const double error = bundle_.Error(e, state.given);
@@ -186,22 +183,22 @@ class Fitter {
     PlaceUnusedPoints(marked_, states_, kRoughThreshold);
     ControlAdjustment result;
     std::vector<ControlPair> agreeing;
-    std::vector<size_t> agreeing_index;
-    for (size_t i = 0; i < states_.size(); ++i) {
-      if (!states_[i].used) continue;
-      agreeing.push_back({bundle_.point[marked_.TrackOfPoint(i)], states_[i].given, states_[i].sigma_m, GsdOf(i)});
-      agreeing_index.push_back(i);
+    std::vector<ControlState*> of_pair;
+    for (ControlState& state : states_) {
+      SetError(state, similarity.CovarianceAt(bundle_.point[state.track]));
+      if (!state.used) continue;
+      agreeing.push_back(PairOf(state));
+      of_pair.push_back(&state);
     }
-    for (size_t i = 0; i < states_.size(); ++i) SetError(i, similarity.CovarianceAt(bundle_.point[marked_.TrackOfPoint(i)]));
     for (size_t k = 0; k < agreeing.size(); ++k) {
       std::vector<ControlPair> others = agreeing;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
       const ControlSimilarity without = FitControlSimilarity(others);
       if (without.failure != SimilarityFailure::kNone) continue;
-      ControlState& state = states_[agreeing_index[k]];
+      ControlState& state = *of_pair[k];
       const Vector3d x = without.enu_from_model * agreeing[k].in_model;
       state.left_out_error_m = x - state.given;
-      const auto of_marks = bundle::CovarianceByMarks(bundle_, marked_.TrackOfPoint(agreeing_index[k]));
+      const auto of_marks = bundle::CovarianceByMarks(bundle_, state.track);
       const Matrix3d covariance = without.CovarianceAt(x) + (of_marks ? *of_marks : Matrix3d::Zero());
       state.left_out_sigma_m = (covariance.diagonal() + state.sigma_m.cwiseAbs2()).cwiseSqrt();
       if (!state.HasHeight()) state.left_out_error_m.z() = state.left_out_sigma_m.z() = kNan;
@@ -218,12 +215,10 @@ class Fitter {
   }
 
   // Of an estimate that the point's own coordinates hardly influence; `place` is the covariance of the frame there.
-  void SetError(size_t i, const Matrix3d& place) {
-    ControlState& state = states_[i];
-    const uint32_t t = marked_.TrackOfPoint(i);
-    if (bundle_.has_point[t] == 0) return;
-    state.error_m = bundle_.point[t] - state.given;
-    if (const auto of_marks = bundle::CovarianceByMarks(bundle_, t)) {
+  void SetError(ControlState& state, const Matrix3d& place) {
+    if (bundle_.has_point[state.track] == 0) return;
+    state.error_m = bundle_.point[state.track] - state.given;
+    if (const auto of_marks = bundle::CovarianceByMarks(bundle_, state.track)) {
       state.error_sigma_m = ((place + *of_marks).diagonal() + state.sigma_m.cwiseAbs2()).cwiseSqrt();
     }
     if (!state.HasHeight()) state.error_m.z() = state.error_sigma_m.z() = kNan;
@@ -232,7 +227,7 @@ class Fitter {
   // The place is known without control points: what they say of it.
   PlacedByControl Compare() {
     const PlaceWithoutControl& place = *job_.otherwise;
-    states_ = StatesOf(job_.control, place.origin);
+    states_ = StatesOf(job_.control, marked_, place.origin);
     marked_.Move(place.enu_from_model);
     Vector3d middle = Vector3d::Zero();
     for (const bundle::BundlePhoto& photo : bundle_.photos) middle += photo.centre / static_cast<double>(bundle_.photos.size());
@@ -246,9 +241,9 @@ class Fitter {
     covariance(3, 3) = covariance(4, 4) = 0.5 * square(kRadians * accuracy.tilt_deg);
     covariance(5, 5) = square(kRadians * accuracy.yaw_deg);
     covariance(6, 6) = square(0.01 * accuracy.scale_percent);
-    for (size_t i = 0; i < states_.size(); ++i) {
-      const Eigen::Matrix<double, 3, 7> jacobian = bundle::SimilarityJacobian(bundle_.point[marked_.TrackOfPoint(i)] - middle);
-      SetError(i, jacobian * covariance * jacobian.transpose());
+    for (ControlState& state : states_) {
+      const Eigen::Matrix<double, 3, 7> jacobian = bundle::SimilarityJacobian(bundle_.point[state.track] - middle);
+      SetError(state, jacobian * covariance * jacobian.transpose());
     }
     PlacedByControl compared;
     compared.origin = place.origin;
@@ -260,9 +255,8 @@ class Fitter {
 
   PlacedByControl WithoutControl(SimilarityFailure failure) {
     std::vector<std::string> usable;
-    for (size_t i = 0; i < states_.size(); ++i) {
-      const bool seen = bundle_.has_point[marked_.TrackOfPoint(i)] != 0;
-      if (!job_.control.points[i].check && states_[i].HasHeight() && seen) usable.push_back(job_.control.points[i].label);
+    for (const ControlState& state : states_) {
+      if (!state.as_read->check && state.HasHeight() && bundle_.has_point[state.track] != 0) usable.push_back(state.as_read->label);
     }
     const NoControl why = WhyNoControl(failure, usable);
     if (!job_.otherwise) Refuse(why);
@@ -273,10 +267,10 @@ class Fitter {
     return compared;
   }
 
-  survey::ControlUse UseOf(size_t i) const {
-    if (bundle_.has_point[marked_.TrackOfPoint(i)] == 0) return survey::ControlUse::kUnseen;
-    if (states_[i].used) return survey::ControlUse::kControl;
-    return states_[i].contradicts ? survey::ControlUse::kRejected : survey::ControlUse::kCheck;
+  survey::ControlUse UseOf(const ControlState& state) const {
+    if (bundle_.has_point[state.track] == 0) return survey::ControlUse::kUnseen;
+    if (state.used) return survey::ControlUse::kControl;
+    return state.contradicts ? survey::ControlUse::kRejected : survey::ControlUse::kCheck;
   }
 
   survey::ControlFit Report() const {
@@ -284,12 +278,10 @@ class Fitter {
     fit.file = job_.control.file;
     fit.crs = job_.control.crs;
     fit.heights = job_.control.heights;
-    for (size_t i = 0; i < states_.size(); ++i) {
-      const ControlPoint& given = job_.control.points[i];
-      const ControlState& state = states_[i];
+    for (const ControlState& state : states_) {
       survey::ControlPointFit point;
-      point.label = given.label;
-      point.use = UseOf(i);
+      point.label = state.as_read->label;
+      point.use = UseOf(state);
       point.given_in_enu = state.given;
       point.given_sigma_m = {state.sigma_m.x(), state.HasHeight() ? state.sigma_m.z() : kNan};
       if (!state.HasHeight()) point.given_in_enu.z() = kNan;
@@ -297,17 +289,17 @@ class Fitter {
       if (seen) {
         point.error_m = state.error_m;
         point.sigma_m = state.error_sigma_m;
-        point.gsd_m = GsdOf(i);
+        point.gsd_m = GsdOf(state);
       }
       if (point.use == survey::ControlUse::kControl) point.left_out_error_m = state.left_out_error_m;
       double squares = 0.0;
       int n = 0;
-      for (size_t k = 0; k < given.marks.size(); ++k) {
+      for (size_t k = 0; k < state.entries.size(); ++k) {
         survey::ControlMarkFit mark;
-        mark.photo = given.marks[k].photo;
-        mark.pixel = given.marks[k].pixel;
-        if (const auto entry = marked_.mark[i][k]; entry && seen) {
-          const double error = bundle_.Error(*entry, bundle_.point[marked_.TrackOfPoint(i)]);
+        mark.photo = state.as_read->marks[k].photo;
+        mark.pixel = state.as_read->marks[k].pixel;
+        if (const auto entry = state.entries[k]; entry && seen) {
+          const double error = bundle_.Error(*entry, bundle_.point[state.track]);
           if (error >= 0.0)
             mark.error_px = error * bundle_.lenses[static_cast<size_t>(bundle_.photos[bundle_.tracks.entries[*entry].photo].lens)].unit_px;
           mark.used = error >= 0.0 && bundle_.agrees[*entry] != 0;

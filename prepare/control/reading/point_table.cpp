@@ -1,10 +1,11 @@
+#include "prepare/control/reading/point_table.h"
+
 #include <array>
 #include <cmath>
 #include <map>
 
 #include "core/base/errors.h"
 #include "prepare/control/reading/control_columns.h"
-#include "prepare/control/reading/table_readers.h"
 
 namespace skyquilt::prepare::control {
 namespace {

@@ -14,9 +14,10 @@
 #include "core/base/text.h"
 #include "prepare/control/reading/control_columns.h"
 #include "prepare/control/reading/metashape_markers.h"
+#include "prepare/control/reading/odm_gcp_list.h"
 #include "prepare/control/reading/opensfm_control.h"
 #include "prepare/control/reading/point_places.h"
-#include "prepare/control/reading/table_readers.h"
+#include "prepare/control/reading/point_table.h"
 #include "prepare/tables/text_table.h"
 
 namespace skyquilt::prepare::control {

@@ -1,4 +1,4 @@
-// Faults of GPS tags that no fit can repair, recognised by their pattern.
+// Faults of GPS tags that no fit can repair, recognised by their pattern. Those of gimbal angles take gravity to judge: georeference/gimbal_check.h.
 #pragma once
 
 #include <optional>

@@ -8,7 +8,8 @@
 
 #include "core/base/json_text.h"
 #include "core/image/image.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/geo_section.h"
+#include "evaluate/page/sections.h"
 #include "tests/evaluate/page/count_of.h"
 #include "tests/evaluate/page/sample_report.h"
 #include "tests/support/temporary_folder.h"

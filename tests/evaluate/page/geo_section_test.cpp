@@ -8,7 +8,7 @@
 
 #include "core/base/pattern.h"
 #include "evaluate/page/page_parts.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 #include "tests/evaluate/page/count_of.h"
 #include "tests/evaluate/page/sample_report.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/file.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 #include "tests/evaluate/page/count_of.h"
 #include "tests/evaluate/page/sample_report.h"
 #include "tests/support/temporary_folder.h"

@@ -10,6 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/pattern.h"
 #include "evaluate/page/report_images.h"
+#include "evaluate/page/sections.h"
 #include "tests/evaluate/page/count_of.h"
 #include "tests/evaluate/page/sample_report.h"
 

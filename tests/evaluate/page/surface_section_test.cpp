@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "evaluate/page/report_images.h"
-#include "evaluate/page/report_page.h"
+#include "evaluate/page/sections.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::evaluate::page {

@@ -1,12 +1,10 @@
-#include "prepare/georeference/photo_column.h"
+#include "prepare/georeference/tags/photo_column.h"
 
-#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
 #include "core/linear/linear.h"
-#include "prepare/georeference/place_problems.h"
 #include "prepare/georeference/tags/tag_checks.h"
 #include "prepare/georeference/tags/tags.h"
 
@@ -52,7 +50,7 @@ double CorrelationWithHeights(const std::vector<Tag>& tags, const std::vector<Ve
 
 }  // namespace
 
-bool CamerasAboveOneAnother(const std::vector<input::PreparedPhoto>& photos, const Gravity& gravity) {
+bool CamerasAboveOneAnother(const std::vector<input::PreparedPhoto>& photos, const Vector3d& up) {
   const std::vector<Tag> tags = TagsOf(photos);
   std::vector<Vector3d> centres;
   Vector3d mean = Vector3d::Zero();
@@ -65,7 +63,7 @@ bool CamerasAboveOneAnother(const std::vector<input::PreparedPhoto>& photos, con
   const linear::EigenPairs<3> eigen = linear::SymmetricEigen(spread);
   if (!(eigen.values[2] > 0.0) || !(eigen.values[0] + eigen.values[1] <= kColumnRatio * kColumnRatio * eigen.values[2])) return false;
   const Vector3d axis = eigen.vectors.col(2);
-  const bool vertical = std::abs(axis.dot(gravity.up)) >= std::cos(kFromVertical_deg * std::numbers::pi / 180.0);
+  const bool vertical = std::abs(axis.dot(up)) >= std::cos(kFromVertical_deg * std::numbers::pi / 180.0);
   return vertical || std::abs(CorrelationWithHeights(tags, centres, axis)) >= kSameCourse;
 }
 
@@ -76,23 +74,6 @@ bool TagsFormColumn(const std::vector<input::PreparedPhoto>& photos) {
   for (const Tag& tag : tags) mean += tag.x_in_enu / static_cast<double>(tags.size());
   for (const Tag& tag : tags) squares += (tag.x_in_enu - mean).cwiseAbs2();
   return squares.z() > 0.0 && squares.x() + squares.y() <= kColumnRatio * kColumnRatio * squares.z();
-}
-
-survey::Problem ColumnProblem() {
-  return NoPlace("one_column", "all photos were taken above one another, which leaves the direction of north open",
-                 "Add photos that were taken several metres to the side, such as a second column, then run the same command with --restart");
-}
-
-survey::Problem OnePlaceProblem(const std::vector<input::PreparedPhoto>& photos, const Gravity& gravity) {
-  const bool equal = AllTagsEqual(photos);
-  // Where the tags' heights say nothing, the cameras decide: in a column even right tags would lie at one place.
-  const bool same_height = equal && JudgeHeights(photos) != HeightTags::kUnknown;
-  if (!same_height && CamerasAboveOneAnother(photos, gravity)) return ColumnProblem();
-  return NoPlace("equal_tags",
-                 equal ? "all GPS tags are at one place"
-                       : "all GPS tags have one latitude and longitude and differ in height alone, though the cameras were not above one another",
-                 "The tags were copied from one photo, or the receiver had no fix. Tag the photos from the flight log, then run the same command "
-                 "with --restart");
 }
 
 }  // namespace skyquilt::prepare::georeference

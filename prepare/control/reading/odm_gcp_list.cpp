@@ -1,3 +1,5 @@
+#include "prepare/control/reading/odm_gcp_list.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -5,7 +7,6 @@
 #include <tuple>
 
 #include "core/base/errors.h"
-#include "prepare/control/reading/table_readers.h"
 
 namespace skyquilt::prepare::control {
 namespace {

@@ -21,6 +21,7 @@
 #include "tour/export/export_plan.h"
 #include "tour/export/script_data.h"
 #include "tour/export/staged_folder.h"
+#include "tour/format/tour_file.h"
 #include "tour/pictures/estimate_seconds.h"
 #include "tour/pictures/make_pictures.h"
 

@@ -175,8 +175,9 @@ std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
   const float* vignetting = response_.vignetting.data() + 3 * static_cast<size_t>(response_.camera[index]);
   const bool is_even = std::all_of(vignetting, vignetting + 3, [](float term) { return term == 0.0F; });
   std::array<std::array<float, 256>, 3> of_value;
+  const std::array<brightness::Exposure, 3> on_axis = response_.ExposureOf(index);
   for (size_t c = 0; is_even && c < 3; ++c) {
-    for (size_t i = 0; i < 256; ++i) of_value[c][i] = image::SrgbFromLinear(linear[i] / exposures_[index][c].gain);
+    for (size_t i = 0; i < 256; ++i) of_value[c][i] = image::SrgbFromLinear(linear[i] / on_axis[c].gain);
   }
   std::vector<Eigen::Vector3f> colors;
   colors.reserve(static_cast<size_t>(kTileRows) * kTileColumns);

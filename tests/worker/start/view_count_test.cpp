@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/image/image.h"
+#include "core/image/srgb.h"
 #include "tests/support/nadir_photo.h"
 #include "tests/support/temporary_folder.h"
 #include "worker/make_background.h"
@@ -62,6 +63,21 @@ class ViewCountTest : public ::testing::Test {
   brightness::Response response_ = brightness::Response::Neutral(2, 1);
   std::unique_ptr<RaySource> source_;
 };
+
+TEST_F(ViewCountTest, ColoursOfTilesHaveTheGainsOfNow) {
+  Photograph(0.0);
+  response_.log_gain[0] = std::log(2.0F);  // red of the first photo, behind the source's back
+  const std::vector<Eigen::Vector3f> even = source_->TileColors(0);
+  response_.vignetting[2] = 1e-20F;  // too little to change a colour, but there
+  const std::vector<Eigen::Vector3f> with_vignetting = source_->TileColors(0);
+  const auto half = [](float value) { return image::SrgbFromLinear(image::LinearFromSrgb(value / 255.0F) / 2.0F); };
+  const float red = 0.5F * (half(200.0F) + half(100.0F));
+  ASSERT_EQ(even.size(), with_vignetting.size());
+  for (size_t i = 0; i < even.size(); ++i) {
+    EXPECT_NEAR(even[i].x(), red, 1e-5F) << i;
+    EXPECT_LT((even[i] - with_vignetting[i]).cwiseAbs().maxCoeff(), 1e-6F) << i;
+  }
+}
 
 TEST_F(ViewCountTest, TilesThatOtherPhotosSeeAreKept) {
   Photograph(48.0);

@@ -85,7 +85,7 @@ def in_feet(text):
 def expect_in_maps(skyquilt, project, truth):
     """Orthophoto and surface model have the targets within 1 GSD of their coordinates, root mean square over the points."""
     skyquilt.call("partition", project, "--blocks", "1x1")
-    skyquilt.call("train", project, "--set", "context.steps=200", "--set", "train.steps=600")
+    skyquilt.call("train", project, "--set", "context.steps=600", "--set", "train.steps=800")
     skyquilt.call("merge", project)
     skyquilt.call("render", project, "--ortho", "--dsm", "--resolution", "0.1")
     picture, surface = Raster(project / "products" / "orthophoto.tif", band=2), Raster(project / "products" / "dsm.tif")

@@ -3,6 +3,7 @@
 #include <limits>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -181,7 +182,37 @@ void CollectLeaves(const std::string& origin, const toml::table& table, const st
   }
 }
 
+// TOML allows bytes of other than ASCII characters in texts and comments only; about some of them elsewhere toml++ 3.3 decides with undefined
+// behaviour (is_non_ascii_horizontal_whitespace). Texts that never end are left to toml++.
+void RefuseStrayCharacters(std::string_view text, const std::string& origin) {
+  int line = 1;
+  std::string_view quotes;  // of the text that is open
+  for (size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; i < text.size();) {
+    const std::string_view rest = text.substr(i);
+    size_t length = 1;
+    if (rest[0] == '\n') ++line;
+    if (quotes.empty()) {
+      if (rest[0] == '#') length = std::min(rest.find('\n'), rest.size());
+      if (rest[0] == '"' || rest[0] == '\'') {
+        quotes = rest.substr(0, rest.starts_with("\"\"\"") || rest.starts_with("'''") ? 3 : 1);
+        length = quotes.size();
+      }
+      if (static_cast<unsigned char>(rest[0]) >= 0x80) {
+        throw base::InputError(origin, "line " + std::to_string(line) + ": here is a character that may stand only in quotes or comments",
+                               "Put the text into quotes, or replace the character: editors and web pages turn quotes and dashes into others");
+      }
+    } else if (rest[0] == '\\' && quotes[0] == '"' && rest.size() > 1 && rest[1] != '\n') {
+      length = 2;
+    } else if (rest.starts_with(quotes) || (quotes.size() == 1 && rest[0] == '\n')) {
+      length = rest[0] == '\n' ? 1 : quotes.size();
+      quotes = {};
+    }
+    i += length;
+  }
+}
+
 toml::table Parse(const std::string& text, const std::string& origin) {
+  RefuseStrayCharacters(text, origin);
   try {
     return toml::parse(text, origin);
   } catch (const toml::parse_error& error) {

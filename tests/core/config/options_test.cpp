@@ -318,6 +318,22 @@ TEST(Toml, SyntaxErrorsNameTheLine) {
   EXPECT_NE(MessageOf<base::InputError>("[train]\nnote = unquoted\n"), "");
 }
 
+TEST(Toml, OtherCharactersStandInQuotesAndCommentsOnly) {
+  All all;
+  const auto read = [&](const std::string& text) { ReadTomlText(text, "skyquilt.toml", all.sections); };
+  for (const char* text : {"\xEF\xBB\xBF[train]\nnote = \"M\u00fcller\" # \u00fc\n", "[train]\nnote = '\"\u00fc'\n",
+                           "[train]\nnote = \"\\\"\u00fc\"\n", "[train]\nnote = \"\"\"a\n\"\u00fc\"\"\"\n", "[train]\nnote = '''a\\\n'\u00fc'''\n"}) {
+    EXPECT_NO_THROW(read(text)) << text;
+    EXPECT_NE(all.train.note.find("\u00fc"), std::string::npos) << text;
+  }
+  // The first was found by fuzzing: toml++ asks about the character what it cannot answer.
+  for (const char* text :
+       {"[train]\nnote = \u035a-2\n", "[train]\nnote = \u201cquoted\u201d\n", "[train]\nst\u00e9ps = 3\n", "[train]\nnote = \"open\n\u00fc\""}) {
+    EXPECT_NE(MessageOf<base::InputError>(text).find("line "), std::string::npos) << text;
+  }
+  EXPECT_NE(MessageOf<base::InputError>("[train]\nsteps = \u201c3\u201d\n").find("line 2: here is a character"), std::string::npos);
+}
+
 TEST(Toml, FilesAreReadAndMissingOnesNamed) {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / ("skyquilt_options_test_" + std::to_string(getpid()) + ".toml");
   base::WriteFileAtomically(file, "[train]\nsteps = 9\n");

@@ -4,23 +4,19 @@
 
 #include "core/base/checked_json.h"
 #include "core/base/json_document.h"
-#include "core/base/text.h"
 
 namespace skyquilt::viewer {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr size_t kMaxControlPoints = 10'000;
-constexpr size_t kMaxPointName = 256;  // 64 characters of any script
 constexpr size_t kMaxPhotoName = 4096;
 
-std::string WithoutFolders(const std::string& name) {
-  return name.substr(name.find_last_of("/\\") + 1);
-}
-
-std::string LowerShortName(const std::string& name) {
-  return base::LowerCase(WithoutFolders(name));
+std::vector<std::string> NamesOf(const survey::Survey* survey) {
+  if (survey == nullptr) return {};
+  std::vector<std::string> names = survey->unregistered;
+  for (const survey::Photo& photo : survey->photos) names.push_back(photo.name);
+  return names;
 }
 
 void CheckMark(const Json& mark, const MarkablePhotos& photos, const std::set<std::string>& allowed, const std::string& where) {
@@ -40,14 +36,10 @@ void CheckMark(const Json& mark, const MarkablePhotos& photos, const std::set<st
 
 }  // namespace
 
-MarkablePhotos::MarkablePhotos(const survey::Survey* survey) {
+MarkablePhotos::MarkablePhotos(const survey::Survey* survey) : names_(NamesOf(survey)), finder_(names_) {
   if (survey == nullptr) return;
   for (const survey::Photo& photo : survey->photos) photos_[photo.name] = &survey->cameras[static_cast<size_t>(photo.camera)];
   for (const std::string& name : survey->unregistered) photos_.emplace(name, nullptr);
-  for (const auto& [name, camera] : photos_) {
-    const auto [at, is_new] = by_short_name_.emplace(LowerShortName(name), name);
-    if (!is_new) at->second.clear();
-  }
 }
 
 bool MarkablePhotos::Contains(const std::string& name, double x, double y) const {
@@ -57,15 +49,13 @@ bool MarkablePhotos::Contains(const std::string& name, double x, double y) const
 }
 
 std::string MarkablePhotos::Find(const std::string& name) const {
-  if (Has(name)) return name;
-  const auto at = by_short_name_.find(LowerShortName(name));
-  return at == by_short_name_.end() ? "" : at->second;
+  const std::optional<size_t> found = finder_.Find(name);
+  return found ? names_[*found] : "";
 }
 
 std::string MarkablePhotos::ShortName(const std::string& name) const {
-  const auto at = by_short_name_.find(LowerShortName(name));
-  const bool clash = at != by_short_name_.end() && at->second != name;
-  return clash ? name : WithoutFolders(name);
+  const std::string file_name = name.substr(name.find_last_of("/\\") + 1);
+  return Find(file_name) == (Has(name) ? name : "") ? file_name : name;
 }
 
 std::optional<std::string> CrsNameOf(bool georeferenced, const geo::UtmZone& zone) {

@@ -6,11 +6,16 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "core/geo/utm.h"
 #include "core/survey/survey.h"
+#include "prepare/models/photo_names.h"
 
 namespace skyquilt::viewer {
+
+constexpr size_t kMaxControlPoints = 10'000;
+constexpr size_t kMaxPointName = 256;  // 64 characters of any script
 
 // The photos in which points can be marked, by name: those of a survey, and those without a pose.
 class MarkablePhotos {
@@ -21,14 +26,16 @@ class MarkablePhotos {
   bool Has(const std::string& name) const { return photos_.contains(name); }
   // Whether the pixel is in the photo, its edges included. Unknown sizes (no pose) end nowhere.
   bool Contains(const std::string& name, double x, double y) const;
-  // The photo of this name; else the only one whose name without folders is this one's, in any case. Empty: there is none.
+  // The photo that a file of another program means, see PhotoNames::Find. Empty: there is none.
   std::string Find(const std::string& name) const;
   // Without folders, unless another photo would have the same name then.
   std::string ShortName(const std::string& name) const;
+  const prepare::models::PhotoNames& finder() const { return finder_; }
 
  private:
   std::unordered_map<std::string, const camera::Camera*> photos_;
-  std::unordered_map<std::string, std::string> by_short_name_;  // lower case; empty: several photos
+  std::vector<std::string> names_;
+  prepare::models::PhotoNames finder_;
 };
 
 // "EPSG:32632"; nothing for a project without geo-reference.

@@ -2,10 +2,10 @@
 // Source: https://docs.opendronemap.org/gcp/
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "core/geo/utm.h"
 #include "viewer/data/gcp_json.h"
@@ -17,13 +17,12 @@ namespace skyquilt::viewer {
 // other programs do not know.
 std::string GcpListText(const nlohmann::json& gcp, const MarkablePhotos& photos);
 
-struct GcpList {
-  nlohmann::json gcp;  // gcp.json, with "skipped", the number of lines that were left out, if there are any; null: see problem
-  std::string problem;
-};
-// A list that was written elsewhere. Coordinates in other UTM zones, or in longitude and latitude, are converted (zone: of the project; none without
-// geo-reference); heights are taken as they are, ETRS89 as WGS84, which differ by less than a metre. Lines with the same name, or without a name at
-// the same place, belong to one point. Marks in photos that are not in the survey have "unknown": true.
-GcpList ReadGcpList(std::string_view text, const std::optional<geo::UtmZone>& zone, const MarkablePhotos& photos);
+// gcp.json of a list that was written elsewhere, read as `prepare` reads it (docs/control_points.md). Coordinates are converted to the project's maps
+// (zone; without geo-reference none, and the first line must be LOCAL), heights with them. Points without a name have an empty one. Marks in photos
+// that are not in the survey have "unknown": true. Lines that cannot be used are left out: "skipped" is their number, and "remarks" says of the first
+// what is wrong with them, and what was assumed; both are missing when there is nothing to say. Throws base::InputError when the list as a whole
+// cannot be used.
+nlohmann::json ReadGcpList(const std::filesystem::path& file, const std::string& text, const std::optional<geo::UtmZone>& zone,
+                           const MarkablePhotos& photos);
 
 }  // namespace skyquilt::viewer

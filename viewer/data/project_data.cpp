@@ -227,10 +227,12 @@ DataReply ProjectData::Get(const std::string& path, const std::string& query) {
 }
 
 DataReply ProjectData::Put(const std::string& path, const std::string& body, const std::string& if_match) {
-  if (!IsDocument(path) && !IsAssetPath(path)) return TextReply(405, "only documents and the files of a tour can be saved");
+  const bool converts = path == "gcp_list.txt";
+  if (!IsDocument(path) && !IsAssetPath(path) && !converts) return TextReply(405, "only documents and the files of a tour can be saved");
   const std::lock_guard lock(impl_->answering);
   const std::shared_ptr<Served> served = impl_->Current();
   const OpenedProject& opened = served->main;
+  if (converts) return ConvertGcpList(opened, body);
   if (!IsDocument(path)) return PutAsset(opened.project.folder, path, body);
   DataReply reply = PutDocument(opened, path, body, impl_->sent.Resolved(path, if_match));
   if (reply.status == 204) impl_->sent.Remember(path, body, reply.etag);

@@ -7,6 +7,7 @@
 //   buildings/buildings.json, .csv, .city.json, .gpkg, .glb, .dxf   what 'skyquilt buildings' wrote
 //   photos/<i>/thumbnail.jpg, /photo.jpg, /full.jpg   256 and 2048 pixels wide; the photo itself
 //   measurements.geojson, gcp.json, camera_path.json, tour.json  saved documents (GET, PUT)
+//   gcp_list.txt                     answers with the control points of the list that is sent (PUT)
 //   tour/assets/<digest>.<type>      models and pictures of the tour (GET, PUT)
 //   pictures/<n>.png                 made by queries
 //   before/...                       the same of the earlier project, without the saved documents

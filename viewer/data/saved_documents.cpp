@@ -56,7 +56,7 @@ std::optional<geo::UtmZone> ZoneOf(const OpenedProject& opened) {
 }
 
 // gcp_list.txt of the project; else beside the photos, or where OpenDroneMap wants it: beside their folder "images".
-GcpList ListFromElsewhere(const OpenedProject& opened, const MarkablePhotos& photos) {
+Json ListFromElsewhere(const OpenedProject& opened, const MarkablePhotos& photos) {
   std::vector<fs::path> files = {opened.project.folder / "gcp_list.txt"};
   if (opened.survey != nullptr) {
     const fs::path& root = opened.survey->photo_root;
@@ -73,16 +73,19 @@ GcpList ListFromElsewhere(const OpenedProject& opened, const MarkablePhotos& pho
       base::LogWarning("{}", failure.what());
     }
     if (text.empty()) continue;
-    GcpList list = ReadGcpList(text, ZoneOf(opened), photos);
-    if (!list.problem.empty()) base::LogWarning("{}: not shown as control points: {}", file.string(), list.problem);
-    return list;
+    try {
+      return ReadGcpList(file, text, ZoneOf(opened), photos);
+    } catch (const base::InputError& failure) {
+      base::LogWarning("not shown as control points: {}", failure.what());
+      return nullptr;
+    }
   }
-  return {};
+  return nullptr;
 }
 
 // The control points that a browser gets now; null when there are none, or gcp.json, whose content is `text`, is damaged.
 Json CurrentControlPoints(const OpenedProject& opened, const MarkablePhotos& photos, const std::string& text) {
-  if (text.empty()) return ListFromElsewhere(opened, photos).gcp;
+  if (text.empty()) return ListFromElsewhere(opened, photos);
   try {
     return base::ParseDocument(text);
   } catch (const base::Refused&) {
@@ -172,8 +175,8 @@ DataReply GetDocument(const OpenedProject& opened, const std::string& name) {
     std::string etag = base::HashHex(content);
     if (!content.empty()) return found(std::move(content), std::move(etag));
     if (name == kControlPoints) {
-      const GcpList list = ListFromElsewhere(opened, MarkablePhotos(opened.survey.get()));
-      if (!list.gcp.is_null()) return found(Indented(list.gcp), std::move(etag));
+      const Json gcp = ListFromElsewhere(opened, MarkablePhotos(opened.survey.get()));
+      if (!gcp.is_null()) return found(Indented(gcp), std::move(etag));
     }
     return NoContent("");
   } catch (const base::InputError& failure) {
@@ -205,6 +208,15 @@ DataReply PutDocument(const OpenedProject& opened, const std::string& name, cons
     return TextReply(400, name + " is not saved: " + refused.what());
   } catch (const base::InputError& failure) {
     return FailureReply(failure, failure.file().filename().string());
+  }
+}
+
+DataReply ConvertGcpList(const OpenedProject& opened, const std::string& text) {
+  try {
+    const Json gcp = ReadGcpList("gcp_list.txt", text, ZoneOf(opened), MarkablePhotos(opened.survey.get()));
+    return {.status = 200, .content_type = "application/json", .body = Indented(gcp), .file = {}};
+  } catch (const base::InputError& failure) {
+    return TextReply(400, failure.finding());
   }
 }
 

@@ -25,6 +25,9 @@ DataReply GetDocument(const OpenedProject& opened, const std::string& name);
 // gcp_list.txt cannot be written.
 DataReply PutDocument(const OpenedProject& opened, const std::string& name, const std::string& body, const std::string& if_match);
 
+// 200 with the text of a gcp_list.txt as gcp.json, see ReadGcpList; 400 with the reason as text. Saves nothing.
+DataReply ConvertGcpList(const OpenedProject& opened, const std::string& text);
+
 // What a document was saved as last. A page that is left while it saves does not know the etag of what it has sent; it names the hash of that body.
 class SentBodies {
  public:

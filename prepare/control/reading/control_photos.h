@@ -29,6 +29,7 @@ class ControlPhotos {
 
   // As PhotoNames::Find; null: none.
   const PhotoSize* Find(const std::string& name) const;
+  const models::PhotoNames& names() const { return finder_; }
 
  private:
   std::vector<PhotoSize> photos_;

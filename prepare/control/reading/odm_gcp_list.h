@@ -4,15 +4,22 @@
 // longitude, latitude, height.
 #pragma once
 
-#include "prepare/control/reading/control_photos.h"
+#include <vector>
+
+#include "prepare/control/reading/raw_control.h"
+#include "prepare/models/photo_names.h"
 #include "prepare/tables/text_table.h"
 
 namespace skyquilt::prepare::control {
 
 // Whether the rows are those of gcp_list.txt: five numbers, then a photo; between commas or semicolons one of `photos`.
-bool LooksLikeGcpList(const tables::TextTable& table, const ControlPhotos& photos);
+bool LooksLikeGcpList(const tables::TextTable& table, const models::PhotoNames& photos);
 
-// The photos help to read names with spaces. Throws base::InputError with the line and how to fix it.
-RawControl ReadGcpList(const tables::TextTable& table, const ControlPhotos& photos);
+struct GcpList {
+  RawControl control;                 // of the lines that can be read
+  std::vector<LineProblem> problems;  // the others, in file order
+};
+// The photos help to read names with spaces.
+GcpList ReadGcpList(const tables::TextTable& table, const models::PhotoNames& photos);
 
 }  // namespace skyquilt::prepare::control

@@ -98,7 +98,7 @@ std::string Assumption(const geo::Crs& crs, Above above) {
 
 }  // namespace
 
-PointPlaces PlacePoints(const RawControl& control, const std::string& option, const std::string& heights, std::vector<std::string>& warnings) {
+PointPlaces PlacePoints(const RawControl& control, const std::string& option, const std::string& heights) {
   const Above above = ParseHeights(heights);
   const geo::Crs crs = MakeCrs(control, option);
   if (crs.IsGeographic() && !control.order_known) {
@@ -117,21 +117,23 @@ PointPlaces PlacePoints(const RawControl& control, const std::string& option, co
   } catch (const std::invalid_argument& error) {
     throw base::InputError(control.file, std::string("gcp_heights cannot be used with ") + result.crs + ": " + error.what(), "Leave it away");
   }
-  for (const RawPoint& point : control.points) {
+  result.places.resize(control.points.size());
+  for (size_t i = 0; i < control.points.size(); ++i) {
+    const RawPoint& point = control.points[i];
     try {
-      result.places.push_back(placer->Place(point.given));
+      result.places[i] = placer->Place(point.given);
       has_height = has_height || !std::isnan(point.given.z());
       guessed = guessed || placer->plane().IsDatumGuessed({point.given.x(), point.given.y(), std::isnan(point.given.z()) ? 0.0 : point.given.z()});
     } catch (const std::invalid_argument& error) {
       const std::string what = error.what();
-      tables::FailTableLine(control.file, point.line, point.label + ": " + what, what.find("grid") == std::string::npos ? kPlaceFix : kGridFix);
+      result.problems[i] = {point.line, point.label + ": " + what, what.find("grid") == std::string::npos ? kPlaceFix : kGridFix};
     }
   }
   const std::string assumption = has_height ? Assumption(crs, above) : "";
-  if (!assumption.empty()) warnings.push_back(control.file.string() + ": " + assumption);
+  if (!assumption.empty()) result.warnings.push_back(assumption);
   if (guessed) {
-    warnings.push_back(control.file.string() + ": PROJ knows no exact way from the datum of " + result.crs +
-                       " to WGS84; the survey may be placed metres off, with old datums more");
+    result.warnings.push_back("PROJ knows no exact way from the datum of " + result.crs +
+                              " to WGS84; the survey may be placed metres off, with old datums more");
   }
   return result;
 }

@@ -1,7 +1,7 @@
 // Turns the coordinates of control points into WGS84 with ellipsoidal heights.
 #pragma once
 
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,10 +12,12 @@
 namespace skyquilt::prepare::control {
 
 struct PointPlaces {
-  std::string crs;                    // name of the system, horizontal and vertical
-  std::string definition;             // what PROJ resolves
-  std::string heights;                // see ControlPoints::heights
-  std::vector<geo::Geodetic> places;  // per point; the height is NaN when the point has none
+  std::string crs;                         // name of the system, horizontal and vertical
+  std::string definition;                  // what PROJ resolves
+  std::string heights;                     // see ControlPoints::heights
+  std::vector<geo::Geodetic> places;       // per point; the height is NaN when the point has none
+  std::map<size_t, LineProblem> problems;  // of points that can have no place, by their index
+  std::vector<std::string> warnings;       // what was assumed
 };
 
 // `crs`: overrides the file's; empty: the file's. `heights` says what the points' heights are above:
@@ -23,7 +25,7 @@ struct PointPlaces {
 //   "ellipsoid"  the WGS84 ellipsoid, whatever the system says
 //   "egm96"      the geoid EGM96
 // Heights are in the unit of the system's vertical part, without one in that of its horizontal part (feet where x is in feet), in metres with
-// degrees. Appends to `warnings` what was assumed. Throws base::UsageError for other `heights`, base::InputError with the line and how to fix it.
-PointPlaces PlacePoints(const RawControl& control, const std::string& crs, const std::string& heights, std::vector<std::string>& warnings);
+// degrees. Throws base::UsageError for other `heights`, base::InputError, with the line and how to fix it, for a system that cannot be used.
+PointPlaces PlacePoints(const RawControl& control, const std::string& crs, const std::string& heights);
 
 }  // namespace skyquilt::prepare::control

@@ -12,6 +12,7 @@ namespace skyquilt::prepare::control {
 
 struct RawPoint {
   std::string label;
+  bool named = true;                                           // false: the file has no label, this one was made for messages
   Eigen::Vector3d given = Eigen::Vector3d::Zero();             // x east or longitude, y north or latitude, z, in the file's units; z NaN: no height
   std::optional<double> horizontal_sigma_m, vertical_sigma_m;  // as stated
   bool check = false;                                          // the file says so
@@ -42,6 +43,12 @@ struct RawControl {
   bool order_known = true;  // false: nothing says which of x and y comes first
   std::vector<RawPoint> points;
   std::vector<RawMark> marks;
+};
+
+// A line of a file that cannot be used: what was found there, and how to fix it.
+struct LineProblem {
+  int line = 0;
+  std::string found, fix;
 };
 
 }  // namespace skyquilt::prepare::control

@@ -41,6 +41,10 @@ char FirstCharacter(const std::string& text) {
   return first == std::string::npos ? '\0' : text[first];
 }
 
+[[noreturn]] void FailLine(const fs::path& file, const LineProblem& problem) {
+  tables::FailTableLine(file, problem.line, problem.found, problem.fix);
+}
+
 RawControl ReadPoints(const ControlFiles& files, const ControlPhotos& photos) {
   const std::string text = base::ReadFile(files.points);
   switch (FirstCharacter(text)) {
@@ -54,7 +58,10 @@ RawControl ReadPoints(const ControlFiles& files, const ControlPhotos& photos) {
       break;
   }
   const tables::TextTable table = tables::ParseTextTable(files.points, text);
-  return files.columns.empty() && LooksLikeGcpList(table, photos) ? ReadGcpList(table, photos) : ReadPointTable(table, files.columns);
+  if (!files.columns.empty() || !LooksLikeGcpList(table, photos.names())) return ReadPointTable(table, files.columns);
+  GcpList list = ReadGcpList(table, photos.names());
+  if (!list.problems.empty()) FailLine(files.points, list.problems.front());
+  return std::move(list.control);
 }
 
 RawControl ReadMarks(const fs::path& file) {
@@ -189,7 +196,9 @@ ControlPoints ReadControl(const ControlFiles& files, const std::vector<PhotoSize
   }
   ControlPoints control;
   control.file = files.points.string();
-  const PointPlaces places = PlacePoints(raw, files.crs, files.heights, control.warnings);
+  const PointPlaces places = PlacePoints(raw, files.crs, files.heights);
+  if (!places.problems.empty()) FailLine(files.points, places.problems.begin()->second);
+  for (const std::string& warning : places.warnings) control.warnings.push_back(control.file + ": " + warning);
   control.crs = places.crs;
   control.heights = places.heights;
   control.crs_definition = places.definition;

@@ -24,7 +24,7 @@ const std::map<std::string, std::set<std::string>>& AllowedIncludes() {
        {"bench", "viewer", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "tour",
         "evaluate", "core"}},
       {"bench", {"coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate", "core"}},
-      {"viewer", {"coordinator", "partition", "products", "surface", "buildings", "tour", "core"}},
+      {"viewer", {"coordinator", "prepare", "partition", "products", "surface", "buildings", "tour", "core"}},
       {"coordinator", {"simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "tour", "evaluate", "core"}},
       {"simulate", {"core"}},
       {"prepare", {"core"}},

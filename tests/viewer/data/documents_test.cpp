@@ -79,6 +79,20 @@ TEST(Documents, ControlPointsAreAlsoWrittenForOtherPrograms) {
   EXPECT_EQ(base::ParseJson(data.Get("gcp.json", "").body), changed);
 }
 
+TEST(Documents, ListsThatAPageSendsAreConvertedAndNotSaved) {
+  SampleProject sample;
+  ProjectData data(sample.project);
+  const DataReply reply = data.Put("gcp_list.txt", "EPSG:32632\n465400.5 5247100.25 410 1 2 IMG_1.jpg\n", "");
+  ASSERT_EQ(reply.status, 200);
+  EXPECT_EQ(base::ParseJson(reply.body), base::ParseJson(R"({"crs": "EPSG:32632", "points": [
+    {"name": "", "x": 465400.5, "y": 5247100.25, "z": 410.0, "marks": [{"photo": "IMG_1.jpg", "pixel": [1.0, 2.0]}]}]})"));
+  EXPECT_FALSE(std::filesystem::exists(sample.project.folder / "gcp_list.txt"));
+  EXPECT_EQ(data.Get("gcp.json", "").status, 204);
+  const DataReply refused = data.Put("gcp_list.txt", "1 2 3 1 2 IMG_1.jpg\n", "");
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_EQ(refused.body, "does not begin with a coordinate system. Write it in the first line, for instance EPSG:32632");
+}
+
 TEST(Documents, EveryListFromElsewhereIsKept) {
   SampleProject sample;
   ProjectData data(sample.project);

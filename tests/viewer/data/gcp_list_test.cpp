@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/errors.h"
 #include "core/base/json_text.h"
+#include "core/geo/crs.h"
 #include "core/geo/utm.h"
+#include "tests/support/error_of.h"
 #include "tests/support/nadir_photo.h"
 
 namespace skyquilt::viewer {
@@ -19,9 +22,13 @@ survey::Survey SurveyOf(const std::vector<std::string>& names) {
   return survey;
 }
 
+nlohmann::json Read(const std::string& text, const std::optional<geo::UtmZone>& zone, const MarkablePhotos& photos) {
+  return ReadGcpList("gcp_list.txt", text, zone, photos);
+}
+
 TEST(GcpList, ReadsWhatOthersWrite) {
   const survey::Survey survey = SurveyOf({"a.jpg", "west/b.jpg", "west/c.jpg", "east/c.jpg"});
-  const GcpList list = ReadGcpList(
+  const nlohmann::json gcp = Read(
       "\xEF\xBB\xBF# comment\r\n"
       "WGS84 UTM 32N\r\n"
       "465400.5\t5247100.25 410 100.5 200.25 A.JPG north\r\n"
@@ -35,19 +42,35 @@ TEST(GcpList, ReadsWhatOthersWrite) {
       "1 2 3 4001 5 a.jpg\n"
       "1 2 nan 4 5 a.jpg",
       kZone, MarkablePhotos(&survey));
-  ASSERT_EQ(list.problem, "");
-  const nlohmann::json& gcp = list.gcp;
   EXPECT_EQ(gcp["crs"], "EPSG:32632");
   ASSERT_EQ(gcp["points"].size(), 2U);
   EXPECT_EQ(gcp["points"][0]["name"], "north");
   ASSERT_EQ(gcp["points"][0]["marks"].size(), 2U);
   EXPECT_EQ(gcp["points"][0]["marks"][0], base::ParseJson(R"({"photo": "a.jpg", "pixel": [100.5, 200.25]})"));
   EXPECT_EQ(gcp["points"][0]["marks"][1], base::ParseJson(R"({"photo": "west/b.jpg", "pixel": [7.0, 8.0]})")) << "the last mark in a photo counts";
-  EXPECT_EQ(gcp["points"][1]["name"], "GCP_1");
+  EXPECT_EQ(gcp["points"][1]["name"], "");
   ASSERT_EQ(gcp["points"][1]["marks"].size(), 2U) << "the same place without a name is one point";
   EXPECT_EQ(gcp["points"][1]["marks"][0]["unknown"], true) << "two photos have this name";
   EXPECT_FALSE(gcp["points"][1]["marks"][1].contains("unknown")) << "a photo without pose can be marked";
   EXPECT_EQ(gcp["skipped"], 4);
+  EXPECT_EQ(gcp["remarks"], base::ParseJson(R"(["line 9: has 4 fields instead of 6 or more", "line 10: 'three' is not a number",
+    "line 11: the mark of point 1 is outside a.jpg", "line 12: point 2 has no height"])"));
+}
+
+TEST(GcpList, LeavesOutPointsThatCannotBeThere) {
+  const survey::Survey survey = SurveyOf({"a.jpg", "b.jpg", "my photo.jpg"});
+  const nlohmann::json gcp = Read(
+      "EPSG:4326\n8.5 91 0 1 2 a.jpg pole\n8.5 91 0 1 2 b.jpg pole\n8.5 47.4 0 1 2 a.jpg p\n8.6 47.4 0 1 2 b.jpg p\n"
+      "8.5 47.4 0 1 2 my photo.jpg p\n",
+      kZone, MarkablePhotos(&survey));
+  ASSERT_EQ(gcp["points"].size(), 1U);
+  ASSERT_EQ(gcp["points"][0]["marks"].size(), 2U);
+  EXPECT_EQ(gcp["points"][0]["marks"][1]["photo"], "my photo.jpg");
+  EXPECT_EQ(gcp["skipped"], 3);
+  ASSERT_EQ(gcp["remarks"].size(), 4U);
+  EXPECT_EQ(gcp["remarks"][0], "heights are taken as metres above the ellipsoid, as the system says nothing about them");
+  EXPECT_EQ(gcp["remarks"][2], "line 3: pole: the position is outside this coordinate system");
+  EXPECT_EQ(gcp["remarks"][3], "line 5: gives p other coordinates than line 4");
 }
 
 TEST(GcpList, KnowsTheUsualCoordinateSystems) {
@@ -57,9 +80,8 @@ TEST(GcpList, KnowsTheUsualCoordinateSystems) {
   const Eigen::Vector2d own = geo::UtmFromGeodetic(place, kZone), neighbour = geo::UtmFromGeodetic(place, {31, true});
   const auto line = [](double x, double y) { return "\n" + std::to_string(x) + " " + std::to_string(y) + " 410 1 2 a.jpg p\n"; };
   const auto x_of = [&](const std::string& text) {
-    const GcpList list = ReadGcpList(text, kZone, photos);
-    EXPECT_EQ(list.problem, "") << text;
-    return list.gcp.is_null() || list.gcp["points"].empty() ? 0.0 : list.gcp["points"][0]["x"].get<double>();
+    const nlohmann::json gcp = Read(text, kZone, photos);
+    return gcp["points"].empty() ? 0.0 : gcp["points"][0]["x"].get<double>();
   };
   for (const char* header :
        {"EPSG:32632", "epsg: 32632", "WGS84 UTM 32N", "WGS84 UTM 32 N", "+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs", "EPSG:25832"}) {
@@ -71,11 +93,14 @@ TEST(GcpList, KnowsTheUsualCoordinateSystems) {
   for (const char* header : {"EPSG:4326", "+proj=longlat +datum=WGS84", "WGS84"}) {
     EXPECT_NEAR(x_of(header + line(place.longitude_deg, place.latitude_deg)), own.x(), 0.1) << header;
   }
-  for (const char* header : {"EPSG:2056", "WGS84 UTM 61N", "+proj=utm +zone=32 +datum=NAD27", "465400 5247100 410 1 2 a.jpg", "LOCAL"}) {
-    EXPECT_NE(ReadGcpList(header + std::string("\n1 2 3 4 5 a.jpg p\n"), kZone, photos).problem, "") << header;
+  const Eigen::Vector3d swiss = geo::Crs("EPSG:2056").FromGeodetic({place.latitude_deg, place.longitude_deg, 0.0});
+  EXPECT_NEAR(x_of("EPSG:2056" + line(swiss.x(), swiss.y())), own.x(), 1e-3);
+  const std::string row = "\n1 2 3 4 5 a.jpg p\n";
+  for (const char* header : {"EPSG:1", "WGS84 UTM 61N", "465400 5247100 410 1 2 a.jpg", "LOCAL"}) {
+    EXPECT_NE(InputErrorOf([&] { Read(header + row, kZone, photos); }), "") << header;
   }
-  EXPECT_EQ(ReadGcpList("LOCAL\n1 2 3 4 5 a.jpg p\n", {}, photos).gcp["points"][0]["x"], 1.0);
-  EXPECT_TRUE(ReadGcpList("EPSG:32632\n1 2 3 4 5 a.jpg p\n", {}, photos).gcp.is_null());
+  EXPECT_EQ(Read("LOCAL" + row, {}, photos)["points"][0]["x"], 1.0);
+  EXPECT_NE(InputErrorOf([&] { Read("EPSG:32632" + row, {}, photos); }).find("no geo-reference"), std::string::npos);
 }
 
 TEST(GcpList, ReadsBackWhatItWrites) {
@@ -88,7 +113,7 @@ TEST(GcpList, ReadsBackWhatItWrites) {
   const std::string text = GcpListText(gcp, photos);
   EXPECT_NE(text.find(" 2.jpg a\n"), std::string::npos) << "without the folder, as OpenDroneMap wants it";
   EXPECT_NE(text.find(" west/1.jpg a\n"), std::string::npos) << "but not when another photo has this name";
-  EXPECT_EQ(ReadGcpList(text, kZone, photos).gcp, gcp);
+  EXPECT_EQ(Read(text, kZone, photos), gcp);
 }
 
 TEST(GcpList, BlanksInNamesDoNotMoveFields) {
@@ -104,12 +129,14 @@ TEST(GcpList, BlanksInNamesDoNotMoveFields) {
 
 TEST(GcpList, EmptyAndOddTextsAreNoPoints) {
   const MarkablePhotos none(nullptr);
-  for (const char* text : {"", "\n\n", "#", "EPSG:32632", "EPSG:32632\n\n#x\n", "\xff\xfe", "EPSG:", "WGS84 UTM", "WGS84 UTM N",
-                           "+proj=", "EPSG:99999999999", "EPSG:32632\n1e400 2 3 4 5 a.jpg", "EPSG:4326\n8 91 0 1 2 a.jpg"}) {
-    const GcpList list = ReadGcpList(text, kZone, none);
-    EXPECT_TRUE(list.gcp.is_null() || list.gcp["points"].empty()) << text;
+  for (const char* text : {"EPSG:32632", "EPSG:32632\n\n#x\n", "EPSG:32632\n1e400 2 3 4 5 a.jpg", "EPSG:4326\n8 91 0 1 2 a.jpg"}) {
+    EXPECT_TRUE(Read(text, kZone, none)["points"].empty()) << text;
   }
-  EXPECT_NE(ReadGcpList(std::string(5U << 20U, 'x'), kZone, none).problem, "");
+  for (const std::string& text :
+       {std::string(), std::string("\n\n"), std::string("#"), std::string("\xff\xfe"), std::string("EPSG:"), std::string("WGS84 UTM"),
+        std::string("WGS84 UTM N"), std::string("+proj="), std::string("EPSG:99999999999"), std::string(5U << 20U, 'x')}) {
+    EXPECT_NE(InputErrorOf([&] { Read(text, kZone, none); }), "") << text.substr(0, 40);
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@ import { AppView } from "../panels/shell/app_view.js";
 import { addViewCommands } from "../panels/shell/view_commands.js";
 import { assetUrl, uploadAsset } from "../protocol/assets_client.js";
 import { loadBuildings } from "../protocol/buildings_client.js";
+import { convertGcpList } from "../protocol/documents_client.js";
 import { connect } from "../protocol/link.js";
 import { loadProject } from "../protocol/project_client.js";
 import { loadRights } from "../protocol/rights_client.js";
@@ -45,7 +46,8 @@ async function start(root: Root, container: HTMLElement): Promise<void> {
     ...base,
     ground: groundLoader(project, fetchBytes, (url) => Promise.resolve(url)),
   });
-  const context: AppContext = { ...base, assets: { url: assetUrl, upload: uploadAsset }, controls: playback };
+  const assets = { url: assetUrl, upload: uploadAsset };
+  const context: AppContext = { ...base, assets, controls: playback, convertGcpList };
   addViewCommands(context);
   // A stop of the tour may switch the layer on before the map has been made.
   store.subscribe(

@@ -47,4 +47,6 @@ export interface PlayContext {
 export interface AppContext extends PlayContext {
   readonly link: Link;
   readonly assets: TourAssets;
+  /** The control points of a gcp_list.txt as gcp.json. Rejects with an Error for the user. */
+  convertGcpList(list: string): Promise<string>;
 }

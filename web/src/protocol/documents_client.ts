@@ -55,6 +55,14 @@ export async function saveDocument(file: DocumentFile, text: string, options: Sa
   return tagOf(response);
 }
 
+/** The control points of a gcp_list.txt as gcp.json; nothing is saved. Throws an Error whose message is for the user. */
+export async function convertGcpList(list: string): Promise<string> {
+  const headers = { "Content-Type": "text/plain" };
+  const response = await request("/data/gcp_list.txt", { method: "PUT", headers, body: list });
+  if (!response.ok) throw new Error(await reason(response));
+  return response.text();
+}
+
 /** A proxy that compresses makes the tag a weak one, which is none for If-Match. */
 function tagOf(response: Response): string | null {
   return response.headers.get("ETag")?.replace(/^W\//, "") ?? null;

@@ -8,8 +8,10 @@ import {
   CheckError,
   optionalBoolean,
   optionalString,
+  parseJson,
 } from "../base/check.js";
 import type { ControlMark, ControlPoint } from "./app_state.js";
+import { freePointName } from "./control_points.js";
 import type { ProjectBase } from "./project.js";
 
 type MappedProject = Pick<ProjectBase, "crs">;
@@ -35,14 +37,40 @@ function writeMark({ photo, pixel, unknown }: ControlMark): ControlMark {
   return unknown === true ? { photo, pixel, unknown } : { photo, pixel };
 }
 
-/** Lines of a gcp_list.txt that the server could not read, when it made the points from one. */
-export function skippedLines(value: unknown): number {
-  const { skipped } = asObject(value, "");
-  return typeof skipped === "number" && skipped > 0 ? skipped : 0;
+/** What the server left out and assumed when it made the points from a gcp_list.txt; empty: nothing. */
+export function listRemark(value: unknown): string {
+  const { skipped, remarks } = asObject(value, "");
+  const lines = skipped === 1 ? "1 line" : `${skipped} lines`;
+  const left = typeof skipped === "number" ? [`${lines} had to be left out`] : [];
+  return [...left, ...(Array.isArray(remarks) ? remarks : [])].join("; ");
 }
 
-/** Throws CheckError. */
-export function readControlPoints(value: unknown, project: MappedProject): readonly ControlPoint[] {
+/** gcp.json that the server made from a list to be added to points with the names `taken`. Throws an Error when it has no points. */
+export function readLoadedPoints(
+  text: string,
+  project: MappedProject,
+  taken: readonly string[],
+): { readonly points: readonly ControlPoint[]; readonly remark: string } {
+  const value = parseJson(text, "gcp.json");
+  const points = readControlPoints(value, project, taken);
+  const unknown = new Set(points.flatMap(({ marks }) => marks.flatMap((mark) => (mark.unknown ? [mark.photo] : []))));
+  const remarks = [listRemark(value)];
+  if (unknown.size > 0) {
+    const examples = [...unknown].slice(0, 3).join(", ");
+    remarks.push(`${unknown.size} photos are not in this project, their marks were left out: ${examples}`);
+  }
+  const remark = remarks.filter((text) => text !== "").join("; ");
+  if (points.length === 0) throw new Error(remark || "the file has a coordinate system but no points");
+  const known = points.map((point) => ({ ...point, marks: point.marks.filter((mark) => mark.unknown !== true) }));
+  return { points: known, remark };
+}
+
+/** Points without a name get one that is none of `taken`. Throws CheckError. */
+export function readControlPoints(
+  value: unknown,
+  project: MappedProject,
+  taken: readonly string[] = [],
+): readonly ControlPoint[] {
   const root = asObject(value, "");
   const crs = optionalString(root.crs, "crs");
   const own = project.crs?.name ?? null;
@@ -53,16 +81,20 @@ export function readControlPoints(value: unknown, project: MappedProject): reado
   const points = asList(root.points, "points", readPoint, MOST_POINTS);
   const names = new Set<string>();
   points.forEach(({ name }, i) => {
-    if (names.has(name)) throw new CheckError(`points[${i}].name`, "another point has this name");
+    if (name !== "" && names.has(name)) throw new CheckError(`points[${i}].name`, "another point has this name");
     names.add(name);
   });
-  return points;
+  for (const name of taken) names.add(name);
+  return points.map((point) => {
+    const name = point.name === "" ? freePointName(names) : point.name;
+    names.add(name);
+    return { ...point, name };
+  });
 }
 
 function readPoint(value: unknown, path: string): ControlPoint {
   const point = asObject(value, path);
   const name = asString(point.name, `${path}.name`, 1000);
-  if (name === "") throw new CheckError(`${path}.name`, "it is empty");
   return {
     name,
     xyz: [asNumber(point.x, `${path}.x`), asNumber(point.y, `${path}.y`), asNumber(point.z, `${path}.z`)],

@@ -24,6 +24,27 @@ export function withMark(point: ControlPoint, photo: string, pixel: Vec2 | null)
   return { ...point, marks: pixel === null ? others : [...others, { photo, pixel }] };
 }
 
+/** Points of the same name get the loaded coordinates; marks in the same photo are replaced, the others stay. */
+export function mergeControlPoints(
+  existing: readonly ControlPoint[],
+  loaded: readonly ControlPoint[],
+): readonly ControlPoint[] {
+  const merged = new Map(existing.map((point) => [point.name, point]));
+  for (const point of loaded) {
+    const old = merged.get(point.name);
+    const kept = (old?.marks ?? []).filter((mark) => !point.marks.some((other) => other.photo === mark.photo));
+    merged.set(point.name, { ...point, marks: [...kept, ...point.marks] });
+  }
+  return [...merged.values()];
+}
+
+/** "GCP_1", or the first number that is free. Names are words in gcp_list.txt: no spaces. */
+export function freePointName(taken: ReadonlySet<string>): string {
+  for (let number = 1; ; number += 1) {
+    if (!taken.has(`GCP_${number}`)) return `GCP_${number}`;
+  }
+}
+
 export interface MarkEntry {
   readonly photo: Photo;
   /** Where the point should lie, pixels of the photo; null: not known. */

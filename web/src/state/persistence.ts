@@ -4,7 +4,7 @@ import { readTour } from "../tour/read.js";
 import { writeTour } from "../tour/write.js";
 import type { Documents } from "./app_state.js";
 import { readCameraPath, writeCameraPath } from "./camera_path_file.js";
-import { readControlPoints, skippedLines, writeControlPoints } from "./control_file.js";
+import { listRemark, readControlPoints, writeControlPoints } from "./control_file.js";
 import { type MeasuredProject, writeMeasurements } from "./measurements_file.js";
 import { readMeasurements } from "./measurements_reader.js";
 
@@ -41,9 +41,8 @@ export function withDocumentPart(documents: Documents, file: DocumentFile, from:
 
 /** What the person should know about a file that could be read; empty: nothing. */
 export function documentRemark(file: DocumentFile, text: string): string {
-  const skipped = file === "gcp.json" ? skippedLines(parseJson(text, file)) : 0;
-  if (skipped === 0) return "";
-  return `gcp_list.txt: ${skipped === 1 ? "1 line" : `${skipped} lines`} could not be read and had to be left out.`;
+  const remark = file === "gcp.json" ? listRemark(parseJson(text, file)) : "";
+  return remark === "" ? "" : `gcp_list.txt: ${remark}.`;
 }
 
 /** Throws CheckError when something in it cannot be written. */

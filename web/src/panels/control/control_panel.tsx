@@ -5,7 +5,8 @@ import { errorText } from "../../base/abort.js";
 import type { Vec3 } from "../../base/vec.js";
 import { mapFromEnu } from "../../geo/projection.js";
 import type { ControlPoint } from "../../state/app_state.js";
-import { freePointName, mergeControlPoints, readGcpList } from "../../state/gcp_text.js";
+import { readLoadedPoints } from "../../state/control_file.js";
+import { freePointName, mergeControlPoints } from "../../state/control_points.js";
 import { addNotice } from "../../state/notices.js";
 import type { AppContext } from "../context.js";
 import { useApp, useStore } from "../use_store.js";
@@ -19,6 +20,7 @@ export function ControlPanel(): ReactElement {
   const { store, project } = context;
   const points = useStore((state) => state.documents.controlPoints);
   const selected = useStore((state) => state.selectedControl);
+  const mayLoad = useStore((state) => state.rights.documents);
   return (
     <>
       <p className="hint">
@@ -29,7 +31,7 @@ export function ControlPanel(): ReactElement {
         <button type="button" onClick={() => addPoint(context)}>
           <Icon name="add" size={16} /> Add
         </button>
-        <LoadButton />
+        {mayLoad ? <LoadButton /> : null}
       </div>
       {points.length === 0 ? (
         <p className="hint">
@@ -73,7 +75,7 @@ function addPoint({ store, scene, project }: AppContext): void {
   const centre: Vec3 = [(project.min[0] + project.max[0]) / 2, (project.min[1] + project.max[1]) / 2, project.groundM];
   const enu = middle?.enu ?? centre;
   const xyz = mapFromEnu(project, enu) ?? enu;
-  const name = freePointName(store.get().documents.controlPoints.map((point) => point.name));
+  const name = freePointName(new Set(store.get().documents.controlPoints.map((point) => point.name)));
   store.changeDocuments("add control point", (documents) => ({
     ...documents,
     controlPoints: [...documents.controlPoints, { name, xyz, marks: [] }],
@@ -82,7 +84,7 @@ function addPoint({ store, scene, project }: AppContext): void {
 }
 
 function LoadButton(): ReactElement {
-  const { store, project } = useApp();
+  const { store, project, convertGcpList } = useApp();
   const [reading, setReading] = useState(false);
   const load = async (event: ChangeEvent<HTMLInputElement>): Promise<void> => {
     const input = event.currentTarget;
@@ -91,15 +93,15 @@ function LoadButton(): ReactElement {
     setReading(true);
     try {
       if (file.size > LARGEST_FILE_BYTES) throw new Error("the file is larger than 1 MiB");
-      const text = await file.text();
+      const text = await convertGcpList(await file.text());
       const taken = store.get().documents.controlPoints.map(({ name }) => name);
-      const { points, problems } = readGcpList(text, project, taken);
+      const { points, remark } = readLoadedPoints(text, project, taken);
       store.changeDocuments("load control points", (documents) => ({
         ...documents,
         controlPoints: mergeControlPoints(documents.controlPoints, points),
       }));
       addNotice(store, "info", `${points.length} control points loaded from ${file.name}.`);
-      if (problems.length > 0) addNotice(store, "error", `${file.name}: ${problems.join(" ")}`);
+      if (remark !== "") addNotice(store, "error", `${file.name}: ${remark}.`);
     } catch (error) {
       addNotice(store, "error", `${file.name}: ${errorText(error)}`);
     } finally {

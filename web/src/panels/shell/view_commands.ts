@@ -8,7 +8,7 @@ import { PANELS } from "./panel_names.js";
 import { addScreenCommand } from "./screen_command.js";
 import { turnNorthUp } from "./turn_north.js";
 
-type ViewContext = Omit<AppContext, "assets" | "controls">;
+type ViewContext = Omit<AppContext, "assets" | "controls" | "convertGcpList">;
 
 const LAYERS: readonly { readonly name: keyof Layers; readonly label: string; readonly keys: string[] }[] = [
   { name: "surface", label: "Surface", keys: [] },

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { markEntries, residualPx, withMark } from "../../../src/state/control_points.js";
+import { markEntries, mergeControlPoints, residualPx, withMark } from "../../../src/state/control_points.js";
 import { namesOf, SAMPLE_PHOTOS, sampleSight } from "./photo_samples.js";
 
 test("marked photos come first, also those that should not see the point", () => {
@@ -28,4 +28,23 @@ test("a photo has one mark of a point", () => {
   assert.deepEqual(withMark(point, "a", [2, 2]).marks, [{ photo: "a", pixel: [2, 2] }]);
   assert.equal(withMark(point, "b", [2, 2]).marks.length, 2);
   assert.deepEqual(withMark(point, "a", null).marks, []);
+});
+
+test("loading again replaces marks in the same photos and keeps the others", () => {
+  const mark = (photo: string, x: number) => ({ photo, pixel: [x, 0] as const });
+  const merged = mergeControlPoints(
+    [
+      { name: "P", xyz: [0, 0, 0], marks: [mark("a", 1), mark("b", 1)] },
+      { name: "Q", xyz: [1, 1, 1], marks: [] },
+    ],
+    [
+      { name: "P", xyz: [5, 5, 5], marks: [mark("b", 2)] },
+      { name: "R", xyz: [2, 2, 2], marks: [] },
+    ],
+  );
+  assert.deepEqual(merged, [
+    { name: "P", xyz: [5, 5, 5], marks: [mark("a", 1), mark("b", 2)] },
+    { name: "Q", xyz: [1, 1, 1], marks: [] },
+    { name: "R", xyz: [2, 2, 2], marks: [] },
+  ]);
 });

@@ -7,6 +7,7 @@ import { rotationFromAngles } from "../../../src/geo/camera.js";
 import type { Documents, Measurement, SurfacePoint, VolumeBase } from "../../../src/state/app_state.js";
 import { fovAcrossDeg } from "../../../src/state/camera_path.js";
 import { readCameraPath, writeCameraPath } from "../../../src/state/camera_path_file.js";
+import { readLoadedPoints } from "../../../src/state/control_file.js";
 import { initialState } from "../../../src/state/initial.js";
 import {
   newArea,
@@ -141,9 +142,32 @@ test("angles of a camera path are written without the noise of their last bits",
 
 test("lines of a gcp_list.txt that were left out are told", () => {
   const text = (more: object) => JSON.stringify({ crs: null, points: [], ...more });
-  assert.match(documentRemark("gcp.json", text({ skipped: 3 })), /3 lines/);
+  const remarks = ["line 2: 'x' is not a number", "line 4: has 5 fields instead of 6 or more"];
+  assert.match(documentRemark("gcp.json", text({ skipped: 3, remarks })), /3 lines.*; line 2: 'x' is.*; line 4: has 5/);
   assert.equal(documentRemark("gcp.json", text({})), "");
   assert.equal(documentRemark("camera_path.json", "{}"), "");
+});
+
+test("points of a loaded list get names that are free, and lose marks in photos that are not here", () => {
+  const mark = { photo: "a.jpg", pixel: [1, 2] };
+  const point = (name: string, ...marks: object[]) => ({ name, x: 1, y: 2, z: 3, marks });
+  const points = [point("", mark, { ...mark, photo: "none.jpg", unknown: true }), point("GCP_1"), point("", mark)];
+  const text = (more: object) => JSON.stringify({ crs: null, ...more });
+  const loaded = readLoadedPoints(text({ points }), LOCAL, ["GCP_2", "GCP_9"]);
+  assert.deepEqual(
+    loaded.points.map(({ name, marks }) => [name, marks]),
+    [
+      ["GCP_3", [mark]],
+      ["GCP_1", []],
+      ["GCP_4", [mark]],
+    ],
+  );
+  assert.match(loaded.remark, /^1 photos are not in this project.*none\.jpg$/);
+  assert.throws(() => readLoadedPoints(text({ points: [] }), LOCAL, []), /no points/);
+  assert.throws(
+    () => readLoadedPoints(text({ points: [], skipped: 1, remarks: ["line 2: bad"] }), LOCAL, []),
+    /line 2: bad/,
+  );
 });
 
 test("empty documents come back", () => {

@@ -23,6 +23,8 @@ using Json = nlohmann::json;
 
 constexpr size_t kMaxListBytes = 4U << 20U;
 constexpr size_t kMaxRemarks = 8;
+// The list counts pixels from the middle of the first one, the viewer from its outer corner.
+constexpr double kMiddle = 0.5;
 
 bool IsBlank(char c) {
   return static_cast<unsigned char>(c) <= ' ';
@@ -107,7 +109,7 @@ std::string GcpListText(const Json& gcp, const MarkablePhotos& photos) {
       const std::string photo = photos.ShortName(mark["photo"]);
       if (std::any_of(photo.begin(), photo.end(), IsBlank)) text += "# a photo with blanks in its name: ";
       text += place;
-      for (const Json& pixel : mark["pixel"]) text.append(Fixed(pixel.get<double>(), 2)).append(" ");
+      for (const Json& pixel : mark["pixel"]) text.append(Fixed(pixel.get<double>() - kMiddle, 2)).append(" ");
       text.append(photo).append(" ").append(name).append("\n");
     }
   }
@@ -137,7 +139,8 @@ Json ReadGcpList(const std::filesystem::path& file, const std::string& text, con
   for (const control::RawMark& mark : list.control.marks) {
     const size_t i = index.at(mark.label);
     const std::string photo = photos.Find(mark.photo);
-    const bool outside = !photo.empty() && !photos.Contains(photo, mark.pixel.x(), mark.pixel.y());
+    const Eigen::Vector2d pixel = mark.pixel.array() + kMiddle;
+    const bool outside = !photo.empty() && !photos.Contains(photo, pixel.x(), pixel.y());
     if (outside || !map.problems[i].empty()) {
       left_out[mark.line] = outside ? "the mark of " + mark.label + " is outside " + photo : map.problems[i];
       continue;
@@ -147,7 +150,7 @@ Json ReadGcpList(const std::filesystem::path& file, const std::string& text, con
       const Eigen::Vector3d& place = map.places[i];
       point = {{"name", points[i].named ? points[i].label : ""}, {"x", place.x()}, {"y", place.y()}, {"z", place.z()}, {"marks", Json::array()}};
     }
-    Json json = {{"photo", photo.empty() ? mark.photo : photo}, {"pixel", {mark.pixel.x(), mark.pixel.y()}}};
+    Json json = {{"photo", photo.empty() ? mark.photo : photo}, {"pixel", {pixel.x(), pixel.y()}}};
     if (photo.empty()) json["unknown"] = true;
     SetMark(std::move(json), point["marks"]);
   }

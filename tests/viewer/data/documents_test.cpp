@@ -69,7 +69,7 @@ TEST(Documents, ControlPointsAreAlsoWrittenForOtherPrograms) {
   EXPECT_EQ(converted["points"][0]["name"], "old");
   EXPECT_EQ(data.Put("gcp.json", base::JsonText(Gcps()), "").status, 204);
   EXPECT_EQ(base::ReadFile(list),
-            "EPSG:32632\n465400.5000 5247100.2500 410.0000 100.50 200.25 IMG_0.jpg GCP_1\n# no marks yet: 1.0000 2.0000 3.0000 later\n");
+            "EPSG:32632\n465400.5000 5247100.2500 410.0000 100.00 199.75 IMG_0.jpg GCP_1\n# no marks yet: 1.0000 2.0000 3.0000 later\n");
   EXPECT_NE(base::ReadFile(sample.project.folder / "gcp_list.txt.orig").find("old"), std::string::npos) << "a list from elsewhere is kept";
   nlohmann::json changed = Gcps();
   changed["points"].erase(1);
@@ -85,7 +85,7 @@ TEST(Documents, ListsThatAPageSendsAreConvertedAndNotSaved) {
   const DataReply reply = data.Put("gcp_list.txt", "EPSG:32632\n465400.5 5247100.25 410 1 2 IMG_1.jpg\n", "");
   ASSERT_EQ(reply.status, 200);
   EXPECT_EQ(base::ParseJson(reply.body), base::ParseJson(R"({"crs": "EPSG:32632", "points": [
-    {"name": "", "x": 465400.5, "y": 5247100.25, "z": 410.0, "marks": [{"photo": "IMG_1.jpg", "pixel": [1.0, 2.0]}]}]})"));
+    {"name": "", "x": 465400.5, "y": 5247100.25, "z": 410.0, "marks": [{"photo": "IMG_1.jpg", "pixel": [1.5, 2.5]}]}]})"));
   EXPECT_FALSE(std::filesystem::exists(sample.project.folder / "gcp_list.txt"));
   EXPECT_EQ(data.Get("gcp.json", "").status, 204);
   const DataReply refused = data.Put("gcp_list.txt", "1 2 3 1 2 IMG_1.jpg\n", "");

@@ -46,8 +46,8 @@ TEST(GcpList, ReadsWhatOthersWrite) {
   ASSERT_EQ(gcp["points"].size(), 2U);
   EXPECT_EQ(gcp["points"][0]["name"], "north");
   ASSERT_EQ(gcp["points"][0]["marks"].size(), 2U);
-  EXPECT_EQ(gcp["points"][0]["marks"][0], base::ParseJson(R"({"photo": "a.jpg", "pixel": [100.5, 200.25]})"));
-  EXPECT_EQ(gcp["points"][0]["marks"][1], base::ParseJson(R"({"photo": "west/b.jpg", "pixel": [7.0, 8.0]})")) << "the last mark in a photo counts";
+  EXPECT_EQ(gcp["points"][0]["marks"][0], base::ParseJson(R"({"photo": "a.jpg", "pixel": [101.0, 200.75]})"));
+  EXPECT_EQ(gcp["points"][0]["marks"][1], base::ParseJson(R"({"photo": "west/b.jpg", "pixel": [7.5, 8.5]})")) << "the last mark in a photo counts";
   EXPECT_EQ(gcp["points"][1]["name"], "");
   ASSERT_EQ(gcp["points"][1]["marks"].size(), 2U) << "the same place without a name is one point";
   EXPECT_EQ(gcp["points"][1]["marks"][0]["unknown"], true) << "two photos have this name";
@@ -123,8 +123,8 @@ TEST(GcpList, BlanksInNamesDoNotMoveFields) {
     {"name": "p 1", "x": 1, "y": 2, "z": 3, "marks": [{"photo": "my photo.jpg", "pixel": [4, 5]}, {"photo": "b.jpg", "pixel": [6, 7]}]},
     {"name": "p_1", "x": 1, "y": 2, "z": 3, "marks": [{"photo": "b.jpg", "pixel": [8, 9]}]}]})");
   EXPECT_EQ(GcpListText(gcp, photos),
-            "LOCAL\n# a photo with blanks in its name: 1.0000 2.0000 3.0000 4.00 5.00 my photo.jpg p_1\n"
-            "1.0000 2.0000 3.0000 6.00 7.00 b.jpg p_1\n1.0000 2.0000 3.0000 8.00 9.00 b.jpg p_1_2\n");
+            "LOCAL\n# a photo with blanks in its name: 1.0000 2.0000 3.0000 3.50 4.50 my photo.jpg p_1\n"
+            "1.0000 2.0000 3.0000 5.50 6.50 b.jpg p_1\n1.0000 2.0000 3.0000 7.50 8.50 b.jpg p_1_2\n");
 }
 
 TEST(GcpList, EmptyAndOddTextsAreNoPoints) {

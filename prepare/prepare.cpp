@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -158,27 +159,25 @@ void RequirePlace(const survey::Survey& survey, const fs::path& folder) {
   }
 }
 
-// NaN when the model's observations cannot be read: they serve this check alone.
-double MeasureK1Sigma(const survey::ColmapModel& model, const fs::path& model_folder, uint32_t camera_id) {
+// Of the camera with most photos, by the photos alone. Unknown when the model's observations cannot be read: they serve the checks alone.
+bundle::LensAccuracy MeasureLens(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<input::PreparedPhoto>& photos,
+                                 const survey::Survey& survey) {
+  const auto main = std::find_if(survey.photos.begin(), survey.photos.end(),
+                                 [camera = georeference::MainCamera(survey)](const survey::Photo& photo) { return photo.camera == camera; });
+  if (main == survey.photos.end()) return {};
+  const uint32_t camera_id = model.images[photos[static_cast<size_t>(main - survey.photos.begin())].image].camera_id;
   try {
-    return bundle::MeasureLensAccuracy(model, survey::ReadColmapObservations(model_folder), camera_id).k1_sigma;
+    return bundle::MeasureLensAccuracy(model, survey::ReadColmapObservations(model_folder), camera_id);
   } catch (const base::InputError& error) {
     base::LogInfo("the accuracy of the lens is not computed: {}", error.what());
-    return std::numeric_limits<double>::quiet_NaN();
+    return {};
   }
 }
 
-// Needs the survey's photos, place and heights above ground. `has_observations`: in COLMAP's files, of features in photos, not a simulation's
-// projections.
-void CheckFlightOf(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<input::PreparedPhoto>& photos,
-                   bool has_observations, survey::Survey& survey) {
+// Needs the survey's photos, place and heights above ground.
+void CheckFlightOf(const std::vector<input::PreparedPhoto>& photos, const bundle::LensAccuracy& lens, survey::Survey& survey) {
   survey.checks = georeference::CheckFlight(survey, photos);
-  const auto main = std::find_if(survey.photos.begin(), survey.photos.end(),
-                                 [camera = georeference::MainCamera(survey)](const survey::Photo& photo) { return photo.camera == camera; });
-  if (has_observations && main != survey.photos.end()) {
-    const uint32_t camera_id = model.images[photos[static_cast<size_t>(main - survey.photos.begin())].image].camera_id;
-    survey.checks.k1_sigma = MeasureK1Sigma(model, model_folder, camera_id);
-  }
+  survey.checks.k1_sigma = lens.k1_sigma;
   base::LogInfo(georeference::DescribeChecks(survey.checks));
   for (survey::Problem& problem : georeference::FlightProblems(survey.checks, survey)) survey.problems.push_back(std::move(problem));
 }
@@ -195,11 +194,16 @@ std::map<uint32_t, double> TaggedFocals(const std::vector<input::PreparedPhoto>&
   return median_px;
 }
 
-// Needs the survey's photos, place and heights above ground.
+// Needs the survey's photos, place and heights above ground. `focal_sigma`: as in CheckedResult.
 void CheckAgainstTags(const std::vector<input::PreparedPhoto>& photos, const georeference::GimbalVerdict& gimbal, bool own_poses,
-                      survey::Survey& survey) {
-  georeference::CheckedResult result{
-      .photos = {}, .georeferenced = survey.georeferenced, .own_poses = own_poses, .by_control = survey.control.placed, .gimbal = gimbal};
+                      const std::function<double()>& focal_sigma, survey::Survey& survey) {
+  georeference::CheckedResult result{.photos = {},
+                                     .georeferenced = survey.georeferenced,
+                                     .own_poses = own_poses,
+                                     .by_control = survey.control.placed,
+                                     .scale_percent = survey.fit.accuracy.scale_percent,
+                                     .focal_sigma = focal_sigma,
+                                     .gimbal = gimbal};
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
     const survey::PhotoTags& tags = photos[i].file.tags;
@@ -395,10 +399,17 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   }
   FillPoints(model, georeference.enu_from_model, PhotoOfImage(prepared, model), options.keep_points, survey);
   georeference::MeasureAgl(survey, threads);
+  // The first look waits for it only where no tag confirms the height. A simulation's observations are projections, not features in photos.
+  std::optional<bundle::LensAccuracy> measured;
+  const auto lens = [&] {
+    if (!measured) measured = has_observations ? MeasureLens(model, folders.model, prepared, survey) : bundle::LensAccuracy();
+    return *measured;
+  };
+  const auto focal_sigma = [&] { return lens().focal_sigma; };
   // An exact frame is the truth, whatever the tags say.
-  if (!folders.exact_origin) CheckAgainstTags(prepared, georeference.gimbal, own_poses, survey);
+  if (!folders.exact_origin) CheckAgainstTags(prepared, georeference.gimbal, own_poses, focal_sigma, survey);
   if (on_placed) on_placed(survey, poses_known);
-  CheckFlightOf(model, folders.model, prepared, has_observations, survey);
+  CheckFlightOf(prepared, lens(), survey);
   base::ThrowIfCancelled();
   const georeference::FoundLines lines = georeference::FindHorizontalLines(survey, threads);
   survey.directions = georeference::FindDirections(lines.lines, lines.photos);

@@ -261,10 +261,12 @@ LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey:
   if (!(accuracy.sigma0_px > kExactResidual_px)) return accuracy;
   const auto information = CameraInformation(reduced, EstimatedPoseUnknowns(sample.cam_from_world));
   if (!information) return accuracy;
-  const auto k1_at = std::find(free.begin(), free.end(), static_cast<size_t>(k1_index)) - free.begin();
-  const double variance = InverseDiagonal(*information, k1_at) * sample.share_of_points;
-  const double sigma = accuracy.sigma0_px * std::sqrt(variance);
-  if (std::isfinite(sigma)) accuracy.k1_sigma = sigma;
+  const auto sigma_of = [&](Index at) {
+    const double sigma = accuracy.sigma0_px * std::sqrt(InverseDiagonal(*information, at) * sample.share_of_points);
+    return std::isfinite(sigma) ? sigma : std::numeric_limits<double>::quiet_NaN();
+  };
+  accuracy.k1_sigma = sigma_of(std::find(free.begin(), free.end(), static_cast<size_t>(k1_index)) - free.begin());
+  accuracy.focal_sigma = sigma_of(0) / camera.FocalX();
   return accuracy;
 }
 

@@ -1,6 +1,7 @@
-// How well the photos of a survey determine the lens: the standard deviation of the first radial distortion coefficient, which COLMAP does not write.
-// It follows from the normal equations of the bundle adjustment (Triggs et al., Bundle Adjustment - A Modern Synthesis, 2000, section 6 and appendix
-// A): poses, camera parameters and points are unknowns, points are eliminated, the seven degrees of freedom of the frame are held.
+// How well the photos of a survey determine the lens: the standard deviations of the first radial distortion coefficient and of the focal length,
+// which COLMAP does not write. They follow from the normal equations of the bundle adjustment (Triggs et al., Bundle Adjustment - A Modern Synthesis,
+// 2000, section 6 and appendix A): poses, camera parameters and points are unknowns, points are eliminated, the seven degrees of freedom of the frame
+// are held.
 // ceres::Covariance cannot say it where the photos do not determine the lens: by sparse QR it fails there, by SVD it needs all points in one dense
 // matrix.
 #pragma once
@@ -14,8 +15,10 @@ namespace skyquilt::prepare::bundle {
 
 struct LensAccuracy {
   double k1_sigma = std::numeric_limits<double>::quiet_NaN();  // very large, but finite, when the photos do not determine k1
-  double sigma0_px = 0.0;                                      // standard deviation of one pixel coordinate, from the residuals
-  int n_photos = 0;                                            // that the normal equations were made of
+  // Relative to the focal length, likewise. By these photos alone: their tags, and an adjustment that held the focal length, do not count.
+  double focal_sigma = std::numeric_limits<double>::quiet_NaN();
+  double sigma0_px = 0.0;  // standard deviation of one pixel coordinate, from the residuals
+  int n_photos = 0;        // that the normal equations were made of
   int n_points = 0;
   int n_observations = 0;
 };
@@ -26,7 +29,7 @@ constexpr int kMaxLensPhotos = 150;
 constexpr int kMaxLensPoints = 20000;
 
 // For the camera `camera_id` of the model, from its photos and the points that at least three of them see. All its parameters are unknowns, but not
-// the principal point when it is exactly the middle of the image, where COLMAP leaves it by default. k1_sigma is NaN when nothing can be said: a
+// the principal point when it is exactly the middle of the image, where COLMAP leaves it by default. Both are NaN when nothing can be said: a
 // camera model without k1 or with all distortion 0 (not adjusted), fewer than three photos, too few observations, or observations that are the
 // points' own projections (a simulated survey). Observations of unknown points are ignored. Throws nothing for numbers of any size.
 LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey::ColmapObservations& observations, uint32_t camera_id);

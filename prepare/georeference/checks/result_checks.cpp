@@ -106,6 +106,24 @@ bool DiffersNotably(const FocalFinding& focal) {
   return focal.tagged_px > 0.0 && std::abs(focal.found_px / focal.tagged_px - 1.0) > poses::kUsualFocalError;
 }
 
+// Why the photos do not check the focal length of the tags, a sentence without its full stop. Empty when they do, when that is unknown, or when the
+// lens may have been calibrated or control points decide.
+std::string FocalDoubt(const CheckedResult& result) {
+  if (!result.own_poses || result.by_control) return "";
+  const double sigma = result.focal_sigma ? result.focal_sigma() : 0.0;
+  // What the photos say should tell an unusual error by three standard deviations.
+  if (3.0 * sigma > poses::kUsualFocalError) {
+    constexpr double kTellsNothing = 0.5;
+    return sigma < kTellsNothing ? fmt::format("The photos alone tell the focal length to {:.0f} % only", 100.0 * sigma)
+                                 : "The photos alone do not tell the focal length";
+  }
+  if (result.scale_percent > kWarnScale_percent) {
+    return fmt::format("Photos and GPS tags do not fit each other well (the scale is uncertain by {:.1f} %), as with a wrong focal length",
+                       result.scale_percent);
+  }
+  return "";
+}
+
 std::string HeightText(const poses::HeightAboveTakeOff& height) {
   return fmt::format("the cameras are {:.0f} m above the ground, and RelativeAltitude says {:.0f} m", height.found_m, height.tagged_m);
 }
@@ -147,16 +165,17 @@ void AboutHeight(const CheckedResult& result, const FocalFinding& focal, const p
   const bool decides = !result.by_control;
   // Two tags that do not know each other say the same of the result.
   const bool both_differ = tagged && (height.ratio - 1.0) * (focal.found_px - focal.tagged_px) > 0.0 && DiffersNotably(focal);
+  // Where the focal length is known, hills are the likeliest cause of a small difference.
+  const bool small = tagged && !both_differ && !focal.Far() && !height.Differs() && FocalDoubt(result).empty();
   Contradiction found{.code = height.Contradicts() ? "height_contradicts" : "height_differs",
                       .n_photos = height.n,
                       .found = fmt::format("The cameras are {:.0f} m above the ground (median)", height.found_m),
                       .tags = fmt::format("the RelativeAltitude tags of {} photos say {:.0f} m above take-off", height.n, height.tagged_m),
                       .cause = {},
                       .remedy = {},
-                      // Where the focal length is known, hills are the likeliest cause of a small difference.
-                      .urgency = decides && height.Contradicts()                               ? Urgency::kPlace
-                                 : tagged && !both_differ && !focal.Far() && !height.Differs() ? Urgency::kNote
-                                                                                               : Urgency::kWarning};
+                      .urgency = decides && height.Contradicts() ? Urgency::kPlace
+                                 : small                         ? Urgency::kNote
+                                                                 : Urgency::kWarning};
   const double better_mm = FilmFocal(focal.found_px / height.ratio, focal.longer_side_px);
   const std::string take_off = fmt::format("take-off was {:.0f} m {} the ground of the survey", std::abs(height.found_m - height.tagged_m),
                                            height.found_m > height.tagged_m ? "above" : "below");
@@ -221,6 +240,17 @@ void AboutWitnesses(const CheckedResult& result, const FocalFinding& focal, cons
         focal.found_px, focal.tagged_px);
     found.urgency = Urgency::kWarning;
     checks->scale_doubt = std::max(checks->scale_doubt, ExcessOf(focal.found_px / focal.tagged_px));
+  } else if (const std::string doubt = focal.Far() ? "" : FocalDoubt(result); !doubt.empty()) {
+    found.cause = fmt::format(
+        "{}. It follows the tags, which say {:.0f} mm for a film of 35 mm: where they are wrong (cropped or enlarged photos, another lens), heights "
+        "are wrong by the same factor",
+        doubt, FilmFocal(focal.tagged_px, focal.longer_side_px));
+    found.remedy = fmt::format(
+        "Compare the focal length with the data sheet of the drone's camera and correct the tags (exiftool -FocalLengthIn35mmFormat=...), {}. Or "
+        "compare with a known height, or add photos at an angle or from another height",
+        kAgain);
+    found.urgency = Urgency::kWarning;
+    checks->height_doubt_m = std::max(checks->height_doubt_m, poses::kUsualFocalError * MedianHeight(result));
   }
   checks->contradictions.push_back(std::move(found));
 }

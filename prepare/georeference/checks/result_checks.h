@@ -1,9 +1,10 @@
 // Compares a finished survey with what the photos' tags know but did not decide: focal length, height above ground, directions of the cameras. GPS
 // tags give a survey its scale along the ground. Where all photos look straight down, focal length and height above ground may still be wrong by one
-// common factor, and nothing in the photos shows it.
+// common factor, and little or nothing in the photos shows it.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -29,9 +30,13 @@ struct CheckedPhoto {
 
 struct CheckedResult {
   std::vector<CheckedPhoto> photos;
-  bool georeferenced = true;  // false: heights are no metres and directions are no compass directions
-  bool own_poses = true;      // found from the photos; false: a given model, whose lens may have been calibrated
-  bool by_control = false;    // control points decide about scale and heights
+  bool georeferenced = true;   // false: heights are no metres and directions are no compass directions
+  bool own_poses = true;       // found from the photos; false: a given model, whose lens may have been calibrated
+  bool by_control = false;     // control points decide about scale and heights
+  double scale_percent = 0.0;  // accuracy of the scale, by the tags that agree
+  // Standard deviation of the focal length by the photos alone, relative; NaN: unknown. Asked for only where RelativeAltitude does not confirm the
+  // height; may be empty.
+  std::function<double()> focal_sigma = {};
   GimbalVerdict gimbal;
 };
 

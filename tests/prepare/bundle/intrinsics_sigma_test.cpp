@@ -19,6 +19,7 @@ struct GridModel {
   survey::ColmapModel model;
   survey::ColmapObservations observations;
   double K1Sigma() const { return MeasureLensAccuracy(model, observations, 1).k1_sigma; }
+  double FocalSigma() const { return MeasureLensAccuracy(model, observations, 1).focal_sigma; }
 };
 
 // `side` x `side` photos 15 m apart, 50 m above ground with `relief_m` of random height, looking straight down except that every third leans by
@@ -62,8 +63,8 @@ camera::Camera SimpleRadial() {
   return {camera::CameraModel::kSimpleRadial, 1000, 800, {900.0, 500.0, 400.0, -0.03}};
 }
 
-// Standard deviation of k1 by the whole matrix of derivatives, its pseudo-inverse and nothing else.
-double DenseSigma(const GridModel& grid, const std::vector<size_t>& free, size_t k1_index) {
+// Standard deviation of one of the camera's free parameters by the whole matrix of derivatives, its pseudo-inverse and nothing else.
+double DenseSigma(const GridModel& grid, const std::vector<size_t>& free, size_t parameter) {
   struct Row {
     size_t image, point;
     Eigen::Vector2d pixel;
@@ -114,15 +115,16 @@ double DenseSigma(const GridModel& grid, const std::vector<size_t>& free, size_t
   jacobian *= norms.cwiseInverse().asDiagonal();
   const linear::EigenPairs<Eigen::Dynamic> eigen = linear::SymmetricEigen<Eigen::Dynamic>(jacobian.transpose() * jacobian);
   if (!eigen.found) return std::nan("");
-  const auto k1_at = static_cast<Index>(6 * n_images) + (std::find(free.begin(), free.end(), k1_index) - free.begin());
+  const auto at = static_cast<Index>(6 * n_images) + (std::find(free.begin(), free.end(), parameter) - free.begin());
   double variance = 0.0;
-  for (Index i = 7; i < x.size(); ++i) variance += std::pow(eigen.vectors(k1_at, i) / norms[k1_at], 2) / eigen.values[i];
+  for (Index i = 7; i < x.size(); ++i) variance += std::pow(eigen.vectors(at, i) / norms[at], 2) / eigen.values[i];
   return std::sqrt(variance * squares / (2.0 * static_cast<double>(rows.size()) - static_cast<double>(x.size() - 7)));
 }
 
 TEST(IntrinsicsSigma, IsThatOfTheWholeAdjustment) {
   const GridModel simple = MakeGrid(SimpleRadial(), 3, 15.0, 3.0, 9.0, 0.5);
   EXPECT_NEAR(simple.K1Sigma() / DenseSigma(simple, {0, 3}, 3), 1.0, 1e-6);
+  EXPECT_NEAR(900.0 * simple.FocalSigma() / DenseSigma(simple, {0, 3}, 0), 1.0, 1e-4);
   // A principal point off the middle was adjusted too.
   camera::Camera opencv{camera::CameraModel::kOpencv, 1000, 800, {900.0, 905.0, 503.0, 396.0, -0.03, 0.01, 1e-3, -2e-3}};
   const GridModel all = MakeGrid(opencv, 3, 15.0, 3.0, 9.0, 0.5);
@@ -147,6 +149,17 @@ TEST(IntrinsicsSigma, FlatNadirFlightsDetermineTheLensWorse) {
   EXPECT_TRUE(std::isfinite(nadir));
 }
 
+// Photos that look straight down leave focal length and height open together; leaning ones tell them apart.
+TEST(IntrinsicsSigma, FlatNadirFlightsDetermineTheFocalLengthWorse) {
+  const auto sigma = [](double lean_deg) { return MakeGrid(SimpleRadial(), 6, lean_deg, 0.0, 5.0, 0.5).FocalSigma(); };
+  const double oblique = sigma(20.0), nearly_nadir = sigma(2.0);
+  EXPECT_LT(oblique, 0.01);
+  EXPECT_GT(nearly_nadir, 5.0 * oblique);
+  const double nadir = sigma(0.0);
+  EXPECT_GT(nadir, 0.5);
+  EXPECT_TRUE(std::isfinite(nadir));
+}
+
 TEST(IntrinsicsSigma, DoesNotDependOnTheFrame) {
   GridModel grid = MakeGrid(SimpleRadial(), 4, 10.0, 2.0, 8.0, 0.5);
   const double before = grid.K1Sigma();
@@ -164,12 +177,16 @@ TEST(IntrinsicsSigma, GrowsWithTheNoise) {
   const GridModel grid = MakeGrid(SimpleRadial(), 4, 10.0, 2.0, 8.0, 0.8);
   const LensAccuracy much = MeasureLensAccuracy(grid.model, grid.observations, 1);
   EXPECT_NEAR(much.k1_sigma / little.k1_sigma, 4.0, 0.01);
+  EXPECT_NEAR(much.focal_sigma / little.focal_sigma, 4.0, 0.01);
   EXPECT_NEAR(much.sigma0_px / little.sigma0_px, 4.0, 0.01);
   EXPECT_EQ(much.n_photos, 16);
 }
 
 TEST(IntrinsicsSigma, IsUnknownWhenNothingCanBeSaid) {
-  const auto unknown = [](const GridModel& grid) { return std::isnan(grid.K1Sigma()); };
+  const auto unknown = [](const GridModel& grid) {
+    EXPECT_EQ(std::isnan(grid.FocalSigma()), std::isnan(grid.K1Sigma()));
+    return std::isnan(grid.K1Sigma());
+  };
   EXPECT_FALSE(unknown(MakeGrid(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.5)));
   // Projections of the points, not measurements.
   EXPECT_TRUE(unknown(MakeGrid(SimpleRadial(), 3, 10.0, 2.0, 10.0, 0.0)));

@@ -1,11 +1,13 @@
 #include "prepare/georeference/checks/result_checks.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "core/base/random.h"
 #include "tests/prepare/georeference/lawnmower_photos.h"
@@ -48,9 +50,11 @@ const Contradiction* Named(const ResultChecks& checks, const std::string& code) 
   return found == checks.contradictions.end() ? nullptr : &*found;
 }
 
+// In a warning: a note is only a line of the log.
 bool Mentions(const ResultChecks& checks, const std::string& text) {
   return std::any_of(checks.contradictions.begin(), checks.contradictions.end(), [&](const Contradiction& c) {
     const survey::Problem problem = c.ToProblem();
+    if (c.urgency == Urgency::kNote) return false;
     return problem.finding.find(text) != std::string::npos || problem.advice.find(text) != std::string::npos;
   });
 }
@@ -169,6 +173,81 @@ TEST(ResultChecks, WithoutAnyWitnessTheCauseIsSaid) {
   EXPECT_TRUE(CheckResult(oblique).contradictions.empty());
 }
 
+// Five cases of scripts/tag_faults.py, photos of 200 pixels and 45 m above ground, without RelativeAltitude: the result follows a wrong tag, and what
+// the photos themselves know of the focal length is too little to contradict it.
+TEST(ResultChecks, AHeightThatFollowsTheTaggedFocalLengthAloneIsAWarning) {
+  struct Case {
+    double film_mm, focal_px, agl_m, focal_sigma, scale_percent;
+    const char* reason;
+  };
+  const Case cases[] = {{31.0, 177.1, 54.3, 0.059, 0.25, "to 6 % only"},
+                        {16.0, 92.3, 28.8, 0.142, 0.27, "to 14 % only"},
+                        {9.0, 51.7, 16.2, 0.442, 0.28, "to 44 % only"},
+                        {13.0, 74.7, 23.3, 0.213, 0.29, "to 21 % only"},
+                        {74.0, 422.9, 215.8, 0.028, 3.37, "uncertain by 3.4 %"}};
+  for (const Case& wrong : cases) {
+    CheckedResult result = With(Nadir(1.0, 28), [&](CheckedPhoto& photo) {
+      photo.focal_px = wrong.focal_px;
+      photo.longer_side_px = 200.0;
+      photo.agl_m = wrong.agl_m;
+      photo.tagged_focal_px = wrong.film_mm / 36.0 * 200.0;
+      photo.relative_altitude_m.reset();
+    });
+    result.focal_sigma = [&] { return wrong.focal_sigma; };
+    result.scale_percent = wrong.scale_percent;
+    const ResultChecks checks = CheckResult(result);
+    ASSERT_EQ(checks.contradictions.size(), 1U) << wrong.film_mm;
+    const Contradiction& found = checks.contradictions[0];
+    EXPECT_EQ(found.code, "height_unchecked");
+    EXPECT_EQ(found.urgency, Urgency::kWarning);
+    const std::string finding = found.ToProblem().finding;
+    EXPECT_NE(finding.find("focal length"), std::string::npos) << finding;
+    EXPECT_NE(finding.find(wrong.reason), std::string::npos) << finding;
+    EXPECT_NE(finding.find(fmt::format("{:.0f} mm", wrong.film_mm)), std::string::npos) << finding;
+    EXPECT_NEAR(checks.height_doubt_m, 0.1 * wrong.agl_m, 1e-9);
+    EXPECT_EQ(checks.scale_doubt, 0.0);
+  }
+}
+
+TEST(ResultChecks, PhotosThatTellTheFocalLengthCheckItsTag) {
+  const auto no_height = [](CheckedPhoto& photo) { photo.relative_altitude_m.reset(); };
+  const auto urgency = [](const CheckedResult& result, const char* code) {
+    const ResultChecks checks = CheckResult(result);
+    EXPECT_EQ(checks.height_doubt_m, 0.0);
+    const Contradiction* found = Named(checks, code);
+    EXPECT_NE(found, nullptr);
+    return found == nullptr ? Urgency::kPlace : found->urgency;
+  };
+  // Brighton Beach and Seneca, without their heights above take-off; and a model whose observations cannot be read.
+  for (const double sigma : {0.0059, 0.0002, std::numeric_limits<double>::quiet_NaN()}) {
+    CheckedResult good = With(Nadir(), no_height);
+    good.focal_sigma = [sigma] { return sigma; };
+    good.scale_percent = 0.45;
+    EXPECT_EQ(urgency(good, "height_unchecked"), Urgency::kNote) << sigma;
+  }
+  // Likewise they tell a hill from a wrong tag.
+  CheckedResult hill = With(Nadir(), [](CheckedPhoto& photo) { photo.relative_altitude_m = kTrueHeight_m - 10.0; });
+  hill.focal_sigma = [] { return 0.0059; };
+  EXPECT_EQ(urgency(hill, "height_differs"), Urgency::kNote);
+  hill.focal_sigma = [] { return 0.06; };
+  EXPECT_EQ(urgency(hill, "height_differs"), Urgency::kWarning);
+  // Control points and a given model do not follow the tags.
+  hill.own_poses = false;
+  EXPECT_EQ(urgency(hill, "height_differs"), Urgency::kNote);
+  hill.own_poses = true;
+  hill.by_control = true;
+  EXPECT_EQ(urgency(hill, "height_differs"), Urgency::kNote);
+  // Where tags confirm the height, nobody asks.
+  bool asked = false;
+  CheckedResult confirmed = Nadir();
+  confirmed.focal_sigma = [&] {
+    asked = true;
+    return 0.06;
+  };
+  EXPECT_TRUE(CheckResult(confirmed).contradictions.empty());
+  EXPECT_FALSE(asked);
+}
+
 TEST(ResultChecks, ControlPointsAreNotOverruled) {
   CheckedResult result = Nadir(1.8);
   result.by_control = true;
@@ -273,6 +352,7 @@ RC_GTEST_PROP(ResultChecks, NoHeightIsSilentlyWrong, ()) {
   const double drift = std::exp(random.Uniform(std::log(0.2), std::log(6.0)));
   const double factor = has_focal && follows_tag ? tagged : drift;
   CheckedResult result = Nadir(factor);
+  result.focal_sigma = [] { return 0.06; };
   for (CheckedPhoto& photo : result.photos) {
     photo.tagged_focal_px = has_focal ? std::optional(tagged * kTrueFocal_px) : std::nullopt;
     const bool zero = zeros && random.Uniform(0.0, 1.0) < 0.4;

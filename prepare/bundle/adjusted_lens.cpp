@@ -1,6 +1,7 @@
 #include "prepare/bundle/adjusted_lens.h"
 
 #include <cmath>
+#include <tuple>
 
 namespace skyquilt::prepare::bundle {
 
@@ -50,19 +51,32 @@ camera::Camera CameraOf(const Lens& lens, const camera::Camera& model) {
   return camera;
 }
 
-std::vector<int> HeldNumbers(CameraModel model) {
-  switch (model) {
+int CountNumbers(const camera::Camera& camera) {
+  return static_cast<int>(LensOf(camera) ? std::tuple_size_v<Lens> : camera.params.size());
+}
+
+std::vector<int> HeldNumbers(const camera::Camera& camera, bool free_centre) {
+  std::vector<int> held;
+  int centre = 2;
+  switch (camera.model) {
     case CameraModel::kSimplePinhole:
-      return {1, 2, 3, 4, 5, 6, 7};
+      held = {1, 4, 5, 6, 7};
+      break;
     case CameraModel::kPinhole:
-      return {2, 3, 4, 5, 6, 7};
+      held = {4, 5, 6, 7};
+      break;
     case CameraModel::kSimpleRadial:
-      return {1, 2, 3, 5, 6, 7};
+      held = {1, 5, 6, 7};
+      break;
     case CameraModel::kRadial:
-      return {1, 2, 3, 6, 7};
+      held = {1, 6, 7};
+      break;
     default:
-      return {2, 3};
+      centre = camera::HasOneFocalLength(camera.model) ? 1 : 2;
+      break;
   }
+  if (!free_centre) held.insert(held.end(), {centre, centre + 1});
+  return held;
 }
 
 Eigen::Vector2d Project(const Lens& lens, const Eigen::Vector3d& x_in_cam, LensJacobian* jacobian) {

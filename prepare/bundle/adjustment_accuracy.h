@@ -28,6 +28,8 @@ class AdjustmentAccuracy {
   // Covariance of a point, square metres, from its agreeing entries, `known` (its measured place, when that was a part of the adjustment) and the
   // covariance of photos and lenses. Nothing when fewer than two of its entries count.
   std::optional<Eigen::Matrix3d> OfPoint(uint32_t track, const KnownPoint* known) const;
+  // Variance of a number of a lens. Nothing for one that is held or of no photo.
+  std::optional<double> OfLens(size_t lens, int number) const;
   // Of the survey as a whole: of the similarity that fits the points of the adjustment, about their middle.
   geo::PlaceAccuracy OfPlace() const;
 

@@ -1,18 +1,61 @@
 #include "prepare/bundle/entry_term.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/linear/linear.h"
 #include "prepare/bundle/bundle_costs.h"
 
 namespace skyquilt::prepare::bundle {
+namespace {
+
+// Of a lens that LensOf does not know: by central differences. A point that the camera does not see has no error.
+EntryTerm TermByDifferences(const BundlePhoto& photo, camera::Camera camera, const Eigen::Vector2d& pixel, double sigma_px,
+                            const Eigen::Vector3d& x_in_enu) {
+  const Eigen::Vector3d x_in_cam = photo.cam_from_enu * (x_in_enu - photo.centre);
+  const Eigen::Vector2d projected = camera.ImgFromCam(x_in_cam).value_or(pixel);
+  // At the rim of what the lens shows, one side has no pixel.
+  const auto slope = [&](const auto& at, double step) -> Eigen::Vector2d {
+    const auto ahead = at(step), behind = at(-step);
+    return (ahead.value_or(projected) - behind.value_or(projected)) / ((ahead && behind ? 2.0 : 1.0) * step * sigma_px);
+  };
+  EntryTerm term;
+  term.residual = (projected - pixel) / sigma_px;
+  Eigen::Matrix<double, 2, 3> by_cam;
+  // A millionth of the depth moves the pixel by about a thousandth: far above rounding, far below where the lens' curvature counts.
+  for (int axis = 0; axis < 3; ++axis) {
+    by_cam.col(axis) = slope([&](double shift) { return camera.ImgFromCam(x_in_cam + shift * Eigen::Vector3d::Unit(axis)); }, 1e-6 * x_in_cam.z());
+  }
+  term.by_point = by_cam * photo.cam_from_enu.toRotationMatrix();
+  for (int row = 0; row < 2; ++row) term.by_pose.row(row) << x_in_cam.cross(by_cam.row(row).transpose()).transpose(), -term.by_point.row(row), 0.0;
+  term.by_lens.resize(2, static_cast<Eigen::Index>(camera.params.size()));
+  for (Eigen::Index k = 0; k < term.by_lens.cols(); ++k) {
+    double& parameter = camera.params[static_cast<size_t>(k)];
+    const double value = parameter;
+    const auto at = [&](double shift) {
+      parameter = value + shift;
+      return camera.ImgFromCam(x_in_cam);
+    };
+    // Focal lengths and the principal point are in pixels, distortion is near 1.
+    term.by_lens.col(k) = slope(at, 1e-6 * std::max(1.0, std::abs(value)));
+    parameter = value;
+  }
+  return term;
+}
+
+}  // namespace
 
 EntryTerm TermOf(const BundleProblem& bundle, uint32_t entry, const Eigen::Vector3d& x_in_enu) {
   const BundlePhoto& photo = bundle.photos[bundle.tracks.entries[entry].photo];
   const BundleLens& lens = bundle.lenses[static_cast<size_t>(photo.lens)];
+  const double sigma_px = lens.unit_px * (bundle.sigma.empty() ? 1.0 : bundle.sigma[entry]);
+  if (!LensOf(lens.camera)) return TermByDifferences(photo, lens.camera, bundle.pixel[entry], sigma_px, x_in_enu);
   PoseNumbers pose{};
   Eigen::Map<Eigen::Vector4d>(pose.data()) = photo.cam_from_enu.coeffs();
   Eigen::Map<Eigen::Vector3d>(pose.data() + 4) = photo.centre;
   EntryTerm term;
-  const ReprojectionCost cost(bundle.pixel[entry], lens.unit_px * (bundle.sigma.empty() ? 1.0 : bundle.sigma[entry]));
+  term.by_lens.resize(2, 8);
+  const ReprojectionCost cost(bundle.pixel[entry], sigma_px);
   const double* parameters[] = {pose.data(), lens.numbers.data(), x_in_enu.data()};
   double* jacobians[] = {term.by_pose.data(), term.by_lens.data(), term.by_point.data()};
   cost.Evaluate(parameters, term.residual.data(), jacobians);

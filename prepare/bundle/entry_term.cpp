@@ -14,32 +14,28 @@ EntryTerm TermByDifferences(const BundlePhoto& photo, camera::Camera camera, con
                             const Eigen::Vector3d& x_in_enu) {
   const Eigen::Vector3d x_in_cam = photo.cam_from_enu * (x_in_enu - photo.centre);
   const Eigen::Vector2d projected = camera.ImgFromCam(x_in_cam).value_or(pixel);
-  // At the rim of what the lens shows, one side has no pixel.
-  const auto slope = [&](const auto& at, double step) -> Eigen::Vector2d {
-    const auto ahead = at(step), behind = at(-step);
-    return (ahead.value_or(projected) - behind.value_or(projected)) / ((ahead && behind ? 2.0 : 1.0) * step * sigma_px);
-  };
+  const auto n_params = static_cast<Eigen::Index>(camera.params.size());
+  Eigen::Matrix2Xd slopes(2, 3 + n_params);  // by the point in the camera frame and the camera's parameters
+  for (Eigen::Index k = 0; k < slopes.cols(); ++k) {
+    Eigen::Vector3d x = x_in_cam;
+    double& number = k < 3 ? x[k] : camera.params[static_cast<size_t>(k - 3)];
+    // A millionth of the depth moves the pixel by about a thousandth: far above rounding, far below where the lens' curvature counts. Focal lengths
+    // and the principal point are in pixels, distortion is near 1.
+    const double value = number, step = 1e-6 * (k < 3 ? x_in_cam.z() : std::max(1.0, std::abs(value)));
+    number = value + step;
+    const auto ahead = camera.ImgFromCam(x);
+    number = value - step;
+    const auto behind = camera.ImgFromCam(x);
+    number = value;
+    // At the rim of what the lens shows, one side has no pixel.
+    slopes.col(k) = (ahead.value_or(projected) - behind.value_or(projected)) / ((ahead && behind ? 2.0 : 1.0) * step * sigma_px);
+  }
   EntryTerm term;
   term.residual = (projected - pixel) / sigma_px;
-  Eigen::Matrix<double, 2, 3> by_cam;
-  // A millionth of the depth moves the pixel by about a thousandth: far above rounding, far below where the lens' curvature counts.
-  for (int axis = 0; axis < 3; ++axis) {
-    by_cam.col(axis) = slope([&](double shift) { return camera.ImgFromCam(x_in_cam + shift * Eigen::Vector3d::Unit(axis)); }, 1e-6 * x_in_cam.z());
-  }
-  term.by_point = by_cam * photo.cam_from_enu.toRotationMatrix();
-  for (int row = 0; row < 2; ++row) term.by_pose.row(row) << x_in_cam.cross(by_cam.row(row).transpose()).transpose(), -term.by_point.row(row), 0.0;
-  term.by_lens.resize(2, static_cast<Eigen::Index>(camera.params.size()));
-  for (Eigen::Index k = 0; k < term.by_lens.cols(); ++k) {
-    double& parameter = camera.params[static_cast<size_t>(k)];
-    const double value = parameter;
-    const auto at = [&](double shift) {
-      parameter = value + shift;
-      return camera.ImgFromCam(x_in_cam);
-    };
-    // Focal lengths and the principal point are in pixels, distortion is near 1.
-    term.by_lens.col(k) = slope(at, 1e-6 * std::max(1.0, std::abs(value)));
-    parameter = value;
-  }
+  term.by_point = slopes.leftCols<3>() * photo.cam_from_enu.toRotationMatrix();
+  term.by_lens = slopes.rightCols(n_params);
+  for (int row = 0; row < 2; ++row)
+    term.by_pose.row(row) << x_in_cam.cross(slopes.row(row).head<3>().transpose()).transpose(), -term.by_point.row(row), 0.0;
   return term;
 }
 

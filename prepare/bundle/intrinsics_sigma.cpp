@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/linear/linear.h"
@@ -32,20 +33,11 @@ bool IsFlat(const Eigen::Matrix3d& covariance) {
 }
 
 // Seven numbers of three points for the seven freedoms of the frame: what photos say about the lens does not depend on this choice. Well measured
-// points, far from each other. `variance`: of each point; 0: not in the sample.
-std::vector<KnownPoint> HoldFrame(const BundleProblem& bundle, const std::vector<double>& variance) {
+// points, far from each other. `variance`: of each point; infinite: not in the sample.
+std::vector<KnownPoint> HoldFrame(const BundleProblem& bundle, std::span<const uint32_t> tracks, const std::vector<double>& variance) {
   const auto best = [&](const auto& leverage) {
-    uint32_t best_track = 0;
-    double most = -1.0;
-    for (uint32_t t = 0; t < variance.size(); ++t) {
-      if (!(variance[t] > 0.0)) continue;
-      const double value = leverage(bundle.point[t]) / variance[t];
-      if (value > most) {
-        most = value;
-        best_track = t;
-      }
-    }
-    return best_track;
+    const auto score = [&](uint32_t track) { return leverage(bundle.point[track]) / variance[track]; };
+    return *std::max_element(tracks.begin(), tracks.end(), [&](uint32_t a, uint32_t b) { return score(a) < score(b); });
   };
   const uint32_t a = best([](const Eigen::Vector3d& /*point*/) { return 1.0; });
   const Eigen::Vector3d& origin = bundle.point[a];
@@ -64,24 +56,9 @@ std::vector<KnownPoint> HoldFrame(const BundleProblem& bundle, const std::vector
 }  // namespace
 
 int RadialParameterIndex(camera::CameraModel model) {
-  switch (model) {
-    case camera::CameraModel::kSimpleRadial:
-    case camera::CameraModel::kRadial:
-    case camera::CameraModel::kSimpleRadialFisheye:
-    case camera::CameraModel::kRadialFisheye:
-      return 3;
-    case camera::CameraModel::kOpencv:
-    case camera::CameraModel::kOpencvFisheye:
-    case camera::CameraModel::kFullOpencv:
-    case camera::CameraModel::kThinPrismFisheye:
-    case camera::CameraModel::kRadTanThinPrismFisheye:
-      return 4;
-    case camera::CameraModel::kSimplePinhole:
-    case camera::CameraModel::kPinhole:
-    case camera::CameraModel::kFov:
-      break;
-  }
-  return -1;
+  using camera::CameraModel;
+  if (model == CameraModel::kSimplePinhole || model == CameraModel::kPinhole || model == CameraModel::kFov) return -1;
+  return camera::HasOneFocalLength(model) ? 3 : 4;
 }
 
 LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey::ColmapObservations& observations, uint32_t camera_id) {
@@ -97,7 +74,7 @@ LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey:
   if (n_photos < 3) return accuracy;
 
   accuracy.n_photos = static_cast<int>(n_photos);
-  std::vector<double> variance(bundle.tracks.size(), 0.0);
+  std::vector<double> variance(bundle.tracks.size(), kInfinity);
   double sum_of_squares = 0.0;
   for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
     if (bundle.has_point[t] == 0) continue;
@@ -120,9 +97,9 @@ LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey:
   accuracy.sigma0_px = std::sqrt(sum_of_squares / redundancy);
   if (!(accuracy.sigma0_px > kExactResidual_px)) return accuracy;
 
-  const std::vector<KnownPoint> frame = HoldFrame(bundle, variance);
   std::vector<uint32_t> tracks(bundle.tracks.size());
   std::iota(tracks.begin(), tracks.end(), uint32_t{0});
+  const std::vector<KnownPoint> frame = HoldFrame(bundle, tracks, variance);
   BundleStage stage{.loss = kInfinity, .gentle = true, .lens_prior = false, .known = frame};
   const auto k1_variance = AdjustmentAccuracy(bundle, tracks, stage, nullptr).OfLens(0, LensOf(camera) ? 4 : k1_index);
   stage.free_lens = false;

@@ -18,8 +18,8 @@ namespace skyquilt::prepare::bundle {
 
 class AdjustmentAccuracy {
  public:
-  // After AdjustBundle with the same arguments. Errors of features are taken to have the standard deviation of one unit, those of marks their sigma.
-  // Keeps a reference to the bundle.
+  // After AdjustBundle with the same arguments, or of a bundle that others adjusted so. Errors of features are taken to have the standard deviation
+  // of one unit, those of marks their sigma. Keeps a reference to the bundle.
   AdjustmentAccuracy(const BundleProblem& bundle, std::span<const uint32_t> tracks, const BundleStage& stage, const Eigen::Vector3d* shift);
   ~AdjustmentAccuracy();
 

@@ -124,9 +124,8 @@ CameraSample SelectSample(const survey::ColmapModel& model, const survey::Colmap
   BundleProblem& bundle = sample.bundle;
   bundle = CollectPoints(model, observations, ConsecutivePhotos(model, camera_id, max_photos));
   const camera::Camera& camera = model.cameras.at(camera_id);
-  const Lens numbers = LensOf(camera).value_or(Lens{});
   const bool centred = camera.PrincipalPoint() == Eigen::Vector2d(0.5 * Eigen::Vector2d(camera.width, camera.height));
-  bundle.lenses = {{.numbers = numbers, .initial = numbers, .camera = camera, .free_centre = !centred}};
+  bundle.lenses = {{.numbers = LensOf(camera).value_or(Lens{}), .camera = camera, .free_centre = !centred}};
   sample.share_of_points = ChooseEvenly(bundle, max_points);
   // Leaving out a photo takes sightings from others' points. Each round but the last removes a photo, so this ends.
   do {

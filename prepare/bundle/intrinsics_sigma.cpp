@@ -101,14 +101,16 @@ LensAccuracy MeasureLensAccuracy(const survey::ColmapModel& model, const survey:
   std::iota(tracks.begin(), tracks.end(), uint32_t{0});
   const std::vector<KnownPoint> frame = HoldFrame(bundle, tracks, variance);
   BundleStage stage{.loss = kInfinity, .gentle = true, .lens_prior = false, .known = frame};
-  const auto k1_variance = AdjustmentAccuracy(bundle, tracks, stage, nullptr).OfLens(0, LensOf(camera) ? 4 : k1_index);
-  stage.free_lens = false;
+  const int k1_number = LensOf(camera) ? 4 : k1_index;
+  const auto k1_variance = AdjustmentAccuracy(bundle, tracks, stage, nullptr).OfLens(0, k1_number);
   if (k1_variance) {
     const double sigma = accuracy.sigma0_px * std::sqrt(*k1_variance * sample.share_of_points);
     if (std::isfinite(sigma)) accuracy.k1_sigma = std::min(sigma, kLargestSigma);
-  } else if (AdjustmentAccuracy(bundle, tracks, stage, nullptr).ok()) {
-    accuracy.k1_sigma = kLargestSigma;
+    return accuracy;
   }
+  // It is the lens that the photos do not determine if they determine the poses with a known one.
+  stage.free_lens = false;
+  if (AdjustmentAccuracy(bundle, tracks, stage, nullptr).ok()) accuracy.k1_sigma = kLargestSigma;
   return accuracy;
 }
 

@@ -37,8 +37,8 @@ Lens LensSigma(const BundleLens& lens) {
 }
 
 std::vector<int> HeldNumbersOf(const BundleLens& lens) {
-  std::vector<int> held = HeldNumbers(lens.camera.model);
-  if (lens.hold_focal) held.insert(held.begin(), 0);
+  std::vector<int> held = HeldNumbers(lens.camera, lens.free_centre);
+  if (lens.hold_focal) held.push_back(0);
   return held;
 }
 
@@ -123,7 +123,7 @@ bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const
     }
     lens_manifolds.push_back(std::make_unique<ceres::SubsetManifold>(8, HeldNumbersOf(bundle.lenses[i])));
     problem.SetManifold(lenses[i].data(), lens_manifolds.back().get());
-    problem.AddResidualBlock(new LensCost(bundle.lenses[i].initial, LensSigma(bundle.lenses[i])), nullptr, lenses[i].data());
+    if (stage.lens_prior) problem.AddResidualBlock(new LensCost(bundle.lenses[i].initial, LensSigma(bundle.lenses[i])), nullptr, lenses[i].data());
   }
   if (problem.NumResidualBlocks() == 0) return false;
 

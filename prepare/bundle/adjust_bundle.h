@@ -15,6 +15,7 @@ struct BundleStage {
   double loss = 1.0;
   bool gentle = false;
   bool free_lens = true;
+  bool lens_prior = true;        // free lenses are held near their initial numbers (LensSigma)
   double gps_factor = 1.0;       // on the accuracy of the positions
   double angle_sigma_deg = 3.0;  // of the tagged directions
   int max_iterations = 20;

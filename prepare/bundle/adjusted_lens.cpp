@@ -1,68 +1,53 @@
 #include "prepare/bundle/adjusted_lens.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace skyquilt::prepare::bundle {
+namespace {
 
-using camera::CameraModel;
+// Models up to OPENCV have one focal length or two, the principal point, then k1, k2, p1, p2 or as many of these as they have.
+bool IsKnown(const camera::Camera& camera) {
+  return camera.model <= camera::CameraModel::kOpencv;
+}
+
+std::ptrdiff_t CountFocalLengths(const camera::Camera& camera) {
+  return camera::HasOneFocalLength(camera.model) ? 1 : 2;
+}
+
+}  // namespace
 
 std::optional<Lens> LensOf(const camera::Camera& camera) {
+  if (!IsKnown(camera)) return std::nullopt;
   const std::vector<double>& p = camera.params;
-  switch (camera.model) {
-    case CameraModel::kSimplePinhole:
-      return Lens{p[0], 1.0, p[1], p[2], 0.0, 0.0, 0.0, 0.0};
-    case CameraModel::kPinhole:
-      return Lens{p[0], p[1] / p[0], p[2], p[3], 0.0, 0.0, 0.0, 0.0};
-    case CameraModel::kSimpleRadial:
-      return Lens{p[0], 1.0, p[1], p[2], p[3], 0.0, 0.0, 0.0};
-    case CameraModel::kRadial:
-      return Lens{p[0], 1.0, p[1], p[2], p[3], p[4], 0.0, 0.0};
-    case CameraModel::kOpencv:
-      return Lens{p[0], p[1] / p[0], p[2], p[3], p[4], p[5], p[6], p[7]};
-    default:
-      break;
-  }
-  return std::nullopt;
+  const std::ptrdiff_t n_focal = CountFocalLengths(camera);
+  Lens lens = {p[0], n_focal == 1 ? 1.0 : p[1] / p[0]};
+  std::copy(p.begin() + n_focal, p.end(), lens.begin() + 2);
+  return lens;
 }
 
 camera::Camera CameraOf(const Lens& lens, const camera::Camera& model) {
   camera::Camera camera = model;
-  const auto [f, ratio, cx, cy, k1, k2, p1, p2] = lens;
-  switch (model.model) {
-    case CameraModel::kSimplePinhole:
-      camera.params = {f, cx, cy};
-      break;
-    case CameraModel::kPinhole:
-      camera.params = {f, f * ratio, cx, cy};
-      break;
-    case CameraModel::kSimpleRadial:
-      camera.params = {f, cx, cy, k1};
-      break;
-    case CameraModel::kRadial:
-      camera.params = {f, cx, cy, k1, k2};
-      break;
-    case CameraModel::kOpencv:
-      camera.params = {f, f * ratio, cx, cy, k1, k2, p1, p2};
-      break;
-    default:
-      break;
-  }
+  if (!IsKnown(model)) return camera;
+  const std::ptrdiff_t n_focal = CountFocalLengths(model);
+  camera.params[0] = lens[0];
+  if (n_focal == 2) camera.params[1] = lens[0] * lens[1];
+  std::copy_n(lens.begin() + 2, std::ssize(camera.params) - n_focal, camera.params.begin() + n_focal);
   return camera;
 }
 
-std::vector<int> HeldNumbers(CameraModel model) {
-  switch (model) {
-    case CameraModel::kSimplePinhole:
-      return {1, 2, 3, 4, 5, 6, 7};
-    case CameraModel::kPinhole:
-      return {2, 3, 4, 5, 6, 7};
-    case CameraModel::kSimpleRadial:
-      return {1, 2, 3, 5, 6, 7};
-    case CameraModel::kRadial:
-      return {1, 2, 3, 6, 7};
-    default:
-      return {2, 3};
-  }
+int CountNumbers(const camera::Camera& camera) {
+  return static_cast<int>(IsKnown(camera) ? Lens{}.size() : camera.params.size());
+}
+
+std::vector<int> HeldNumbers(const camera::Camera& camera, bool free_centre) {
+  std::vector<int> held;
+  const int n_focal = static_cast<int>(CountFocalLengths(camera)), centre = IsKnown(camera) ? 2 : n_focal;
+  if (!free_centre) held = {centre, centre + 1};
+  if (n_focal < centre) held.push_back(1);
+  const int first_missing = static_cast<int>(camera.params.size()) - n_focal + centre;
+  for (int k = first_missing; k < CountNumbers(camera); ++k) held.push_back(k);
+  return held;
 }
 
 Eigen::Vector2d Project(const Lens& lens, const Eigen::Vector3d& x_in_cam, LensJacobian* jacobian) {

@@ -18,8 +18,11 @@ using Lens = std::array<double, 8>;
 std::optional<Lens> LensOf(const camera::Camera& camera);
 // The camera with the numbers of the lens; `model` is the camera that LensOf was given.
 camera::Camera CameraOf(const Lens& lens, const camera::Camera& model);
-// Which numbers of the lens the model does not have, and the principal point, which photos of a flight hardly determine.
-std::vector<int> HeldNumbers(camera::CameraModel model);
+// Where LensOf gives nothing, the camera's parameters are the numbers. Of such a lens there are terms (TermOf) and, without a prior, an accuracy
+// (AdjustmentAccuracy), but no adjustment.
+int CountNumbers(const camera::Camera& camera);
+// Which numbers of the lens the model does not have, and, unless `free_centre`, the principal point, which photos of a flight hardly determine.
+std::vector<int> HeldNumbers(const camera::Camera& camera, bool free_centre);
 
 struct LensJacobian {
   Eigen::Matrix<double, 2, 3> by_point;

@@ -17,8 +17,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
-// Of at most eight unknowns of a photo or a lens, without memory of its own.
-using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 8, 8>;
+// Of the unknowns of a photo or a lens, without memory of its own.
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 16, 16>;
 
 // Two products compiled once: those of other types, or by Eigen's blocked algorithm, take seconds to compile and are no faster at these sizes.
 SmallMatrix Times(const SmallMatrix& a, const SmallMatrix& b) {
@@ -63,8 +63,8 @@ struct AdjustmentAccuracy::Impl {
   std::vector<int> group_of_photo, group_of_lens, first;  // first: unknown of each group, and their number
   std::vector<std::vector<int>> free_of_lens;             // numbers of each lens
   int shift_group = -1;
-  std::unordered_map<uint64_t, SmallMatrix> blocks;  // lower triangle, by groups
-  Eigen::VectorXd scale;                             // of the unknowns, so that all have the same accuracy without the others
+  std::unordered_map<uint64_t, MatrixXd> blocks;  // lower triangle, by groups
+  Eigen::VectorXd scale;                          // of the unknowns, so that all have the same accuracy without the others
   std::optional<linear::SparseFactors> factors;
   bool ok = false;
 
@@ -73,10 +73,9 @@ struct AdjustmentAccuracy::Impl {
   void AddBlock(int row, int col, const SmallMatrix& value) {
     const bool lower = row >= col;
     const auto a = static_cast<uint64_t>(lower ? row : col), b = static_cast<uint64_t>(lower ? col : row);
-    const auto [found, is_new] = blocks.try_emplace(a * first.size() + b, SmallMatrix());
-    if (is_new) {
-      found->second = lower ? value : SmallMatrix(value.transpose());
-    } else if (lower) {
+    const auto [found, is_new] = blocks.try_emplace(a * first.size() + b);
+    if (is_new) found->second.setZero(lower ? value.rows() : value.cols(), lower ? value.cols() : value.rows());
+    if (lower) {
       found->second += value;
     } else {
       found->second += value.transpose();
@@ -144,7 +143,7 @@ struct AdjustmentAccuracy::Impl {
     for (size_t i = 0; i < used.size(); ++i) {
       const std::vector<int> held = HeldNumbersOf(bundle.lenses[i]);
       std::vector<int> free;
-      for (int k = 0; k < 8; ++k) {
+      for (int k = 0; k < CountNumbers(bundle.lenses[i].camera); ++k) {
         if (std::find(held.begin(), held.end(), k) == held.end()) free.push_back(k);
       }
       group_of_lens.push_back(used[i] != 0 && stage.free_lens ? add(static_cast<int>(free.size())) : -1);
@@ -174,7 +173,7 @@ struct AdjustmentAccuracy::Impl {
 
   void AddLenses() {
     for (size_t i = 0; i < bundle.lenses.size(); ++i) {
-      if (group_of_lens[i] < 0) continue;
+      if (group_of_lens[i] < 0 || !stage.lens_prior) continue;
       const Lens sigma = LensSigma(bundle.lenses[i]);
       SmallMatrix information =
           SmallMatrix::Zero(static_cast<Eigen::Index>(free_of_lens[i].size()), static_cast<Eigen::Index>(free_of_lens[i].size()));
@@ -264,6 +263,15 @@ std::optional<Matrix3d> AdjustmentAccuracy::OfPoint(uint32_t track, const KnownP
   for (const auto& [group, product] : terms.products)
     motion.middleRows(impl_->first[static_cast<size_t>(group)], product.rows()) += Times(product, inverse);
   return inverse + impl_->Propagate(motion);
+}
+
+std::optional<double> AdjustmentAccuracy::OfLens(size_t lens, int number) const {
+  if (!impl_->ok || impl_->group_of_lens[lens] < 0) return std::nullopt;
+  const std::vector<int>& free = impl_->free_of_lens[lens];
+  const auto found = std::find(free.begin(), free.end(), number);
+  if (found == free.end()) return std::nullopt;
+  const auto group = static_cast<size_t>(impl_->group_of_lens[lens]);
+  return impl_->Propagate(Eigen::VectorXd::Unit(impl_->first.back(), impl_->first[group] + (found - free.begin())))(0, 0);
 }
 
 geo::PlaceAccuracy AdjustmentAccuracy::OfPlace() const {

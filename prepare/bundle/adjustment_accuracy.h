@@ -18,8 +18,8 @@ namespace skyquilt::prepare::bundle {
 
 class AdjustmentAccuracy {
  public:
-  // After AdjustBundle with the same arguments. Errors of features are taken to have the standard deviation of one unit, those of marks their sigma.
-  // Keeps a reference to the bundle.
+  // After AdjustBundle with the same arguments, or of a bundle that others adjusted so. Errors of features are taken to have the standard deviation
+  // of one unit, those of marks their sigma. Keeps a reference to the bundle.
   AdjustmentAccuracy(const BundleProblem& bundle, std::span<const uint32_t> tracks, const BundleStage& stage, const Eigen::Vector3d* shift);
   ~AdjustmentAccuracy();
 
@@ -28,6 +28,8 @@ class AdjustmentAccuracy {
   // Covariance of a point, square metres, from its agreeing entries, `known` (its measured place, when that was a part of the adjustment) and the
   // covariance of photos and lenses. Nothing when fewer than two of its entries count.
   std::optional<Eigen::Matrix3d> OfPoint(uint32_t track, const KnownPoint* known) const;
+  // Variance of a number of a lens. Nothing for one that is held or of no photo.
+  std::optional<double> OfLens(size_t lens, int number) const;
   // Of the survey as a whole: of the similarity that fits the points of the adjustment, about their middle.
   geo::PlaceAccuracy OfPlace() const;
 

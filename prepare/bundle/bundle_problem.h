@@ -45,6 +45,7 @@ struct BundleLens {
   double focal_sigma = 0.05;  // of the initial focal length, relative, one standard deviation
   double unit_px = 1.0;       // errors are counted in pixels of a photo of 1600 pixels width, so that thresholds suit every camera
   bool hold_focal = false;    // the focal length stays what it is
+  bool free_centre = false;   // the principal point is adjusted too
 };
 
 struct BundleProblem {

@@ -1,10 +1,12 @@
 #include "prepare/bundle/camera_sample.h"
 
 #include <algorithm>
-#include <set>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "core/base/disjoint_sets.h"
+#include "prepare/bundle/entry_term.h"
 
 namespace skyquilt::prepare::bundle {
 namespace {
@@ -22,108 +24,120 @@ std::vector<const survey::ColmapImage*> ConsecutivePhotos(const survey::ColmapMo
   return {first, first + static_cast<std::ptrdiff_t>(max_photos)};
 }
 
-size_t CountPhotos(const SamplePoint& point) {
-  std::set<int> photos;
-  for (const Sighting& sighting : point.sightings) photos.insert(sighting.photo);
-  return photos.size();
+// Calls `use` with the track and the photo of each sighting of the sample.
+template <typename Use>
+void ForEachSighting(const BundleProblem& bundle, const Use& use) {
+  for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
+    if (bundle.has_point[t] == 0) continue;
+    for (uint32_t e = bundle.tracks.first[t]; e < bundle.tracks.first[t + 1]; ++e) {
+      if (Counts(bundle, e)) use(t, bundle.tracks.entries[e].photo);
+    }
+  }
 }
 
-void DropWeakPoints(std::vector<SamplePoint>& points) {
-  std::erase_if(points, [](const SamplePoint& point) { return CountPhotos(point) < kMinPhotosOfPoint; });
+void DropWeakPoints(BundleProblem& bundle) {
+  std::vector<size_t> n_photos(bundle.tracks.size(), 0);
+  std::vector<uint32_t> last(bundle.tracks.size(), UINT32_MAX);
+  ForEachSighting(bundle, [&](uint32_t track, uint32_t photo) { n_photos[track] += std::exchange(last[track], photo) != photo ? 1 : 0; });
+  for (size_t t = 0; t < n_photos.size(); ++t) bundle.has_point[t] = n_photos[t] >= kMinPhotosOfPoint ? 1 : 0;
 }
 
 // All points of the model that enough of the photos see.
-std::vector<SamplePoint> CollectPoints(const survey::ColmapModel& model, const survey::ColmapObservations& observations,
-                                       const std::vector<const survey::ColmapImage*>& photos) {
+BundleProblem CollectPoints(const survey::ColmapModel& model, const survey::ColmapObservations& observations,
+                            const std::vector<const survey::ColmapImage*>& photos) {
   std::unordered_map<uint64_t, size_t> index;
-  std::vector<SamplePoint> points(model.points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
-    index.emplace(model.points[i].id, i);
-    points[i].x_in_world = model.points[i].x_in_world;
-  }
-  for (size_t photo = 0; photo < photos.size(); ++photo) {
+  for (size_t i = 0; i < model.points.size(); ++i) index.emplace(model.points[i].id, i);
+  std::vector<std::vector<std::pair<TrackEntry, Eigen::Vector2d>>> sightings(model.points.size());
+  BundleProblem bundle;
+  for (uint32_t photo = 0; photo < photos.size(); ++photo) {
+    const geo::Rigid3d& pose = photos[photo]->cam_from_world;
+    bundle.photos.push_back({.cam_from_enu = pose.rotation, .centre = pose.OriginInSource(), .placed = true});
     const auto list = observations.find(photos[photo]->id);
     if (list == observations.end()) continue;
-    for (const survey::ColmapObservation& observation : list->second) {
-      const auto found = index.find(observation.point_id);
-      if (found != index.end()) points[found->second].sightings.push_back({static_cast<int>(photo), observation.pixel});
+    for (uint32_t feature = 0; feature < list->second.size(); ++feature) {
+      const auto found = index.find(list->second[feature].point_id);
+      if (found != index.end()) sightings[found->second].push_back({{photo, feature}, list->second[feature].pixel});
     }
   }
-  DropWeakPoints(points);
-  return points;
-}
-
-std::vector<SamplePoint> EvenlyChosen(std::vector<SamplePoint> points, size_t max_points) {
-  if (points.size() <= max_points) return points;
-  std::vector<SamplePoint> chosen;
-  chosen.reserve(max_points);
-  for (size_t i = 0; i < max_points; ++i) chosen.push_back(std::move(points[i * points.size() / max_points]));
-  return chosen;
-}
-
-// Per photo: true for those of the largest group that points connect.
-std::vector<char> LargestGroup(size_t n_photos, const std::vector<SamplePoint>& points) {
-  base::DisjointSets groups(n_photos);
-  for (const SamplePoint& point : points) {
-    for (const Sighting& sighting : point.sightings) {
-      groups.Join(static_cast<uint32_t>(sighting.photo), static_cast<uint32_t>(point.sightings.front().photo));
+  for (size_t i = 0; i < sightings.size(); ++i) {
+    for (const auto& [entry, pixel] : sightings[i]) {
+      bundle.tracks.entries.push_back(entry);
+      bundle.pixel.push_back(pixel);
     }
+    bundle.tracks.first.push_back(static_cast<uint32_t>(bundle.tracks.entries.size()));
+    bundle.point.push_back(model.points[i].x_in_world);
   }
-  std::vector<int> size(n_photos, 0);
-  for (uint32_t photo = 0; photo < n_photos; ++photo) ++size[groups.Root(photo)];
-  std::vector<char> keep(n_photos, 0);
-  if (n_photos == 0) return keep;
+  bundle.has_point.assign(bundle.point.size(), 1);
+  bundle.agrees.assign(bundle.pixel.size(), 1);
+  DropWeakPoints(bundle);
+  return bundle;
+}
+
+// Returns the share of points that remain.
+double ChooseEvenly(BundleProblem& bundle, size_t max_points) {
+  std::vector<size_t> points;
+  for (size_t t = 0; t < bundle.has_point.size(); ++t) {
+    if (bundle.has_point[t] != 0) points.push_back(t);
+  }
+  if (points.size() <= max_points) return 1.0;
+  bundle.has_point.assign(bundle.has_point.size(), 0);
+  for (size_t i = 0; i < max_points; ++i) bundle.has_point[points[i * points.size() / max_points]] = 1;
+  return static_cast<double>(max_points) / static_cast<double>(points.size());
+}
+
+// Leaves out the photos that are not of the largest group that points connect, and points that too few of the others see.
+void KeepLargest(BundleProblem& bundle) {
+  base::DisjointSets groups(bundle.photos.size());
+  std::vector<uint32_t> first(bundle.tracks.size(), UINT32_MAX);
+  ForEachSighting(bundle, [&](uint32_t track, uint32_t photo) {
+    if (first[track] == UINT32_MAX) first[track] = photo;
+    groups.Join(photo, first[track]);
+  });
+  std::vector<int> size(bundle.photos.size(), 0);
+  for (uint32_t photo = 0; photo < size.size(); ++photo) size[groups.Root(photo)] += bundle.photos[photo].placed ? 1 : 0;
   const auto largest = static_cast<uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
-  for (uint32_t photo = 0; photo < n_photos; ++photo) keep[photo] = groups.Root(photo) == largest ? 1 : 0;
-  return keep;
+  for (uint32_t photo = 0; photo < size.size(); ++photo) {
+    if (groups.Root(photo) != largest) bundle.photos[photo].placed = false;
+  }
+  DropWeakPoints(bundle);
 }
 
-// Leaves out all photos that are not to be kept, and points that too few of the others see.
-void Keep(const std::vector<char>& keep, std::vector<const survey::ColmapImage*>& photos, std::vector<SamplePoint>& points) {
-  std::vector<int> new_index(photos.size(), -1);
-  size_t n_kept = 0;
-  for (size_t photo = 0; photo < photos.size(); ++photo) {
-    if (keep[photo] == 0) continue;
-    new_index[photo] = static_cast<int>(n_kept);
-    photos[n_kept++] = photos[photo];
+// Leaves out photos with few sightings. False when there are none.
+bool DropWeakPhotos(BundleProblem& bundle) {
+  std::vector<int> n_sightings(bundle.photos.size(), 0);
+  ForEachSighting(bundle, [&](uint32_t /*track*/, uint32_t photo) { ++n_sightings[photo]; });
+  bool dropped = false;
+  for (size_t photo = 0; photo < n_sightings.size(); ++photo) {
+    if (!bundle.photos[photo].placed || n_sightings[photo] >= kMinSightings) continue;
+    bundle.photos[photo].placed = false;
+    dropped = true;
   }
-  photos.resize(n_kept);
-  for (SamplePoint& point : points) {
-    std::erase_if(point.sightings, [&](const Sighting& sighting) { return keep[static_cast<size_t>(sighting.photo)] == 0; });
-    for (Sighting& sighting : point.sightings) sighting.photo = new_index[static_cast<size_t>(sighting.photo)];
-  }
-  DropWeakPoints(points);
-}
-
-std::vector<char> WellSeen(size_t n_photos, const std::vector<SamplePoint>& points) {
-  std::vector<int> n_sightings(n_photos, 0);
-  for (const SamplePoint& point : points) {
-    for (const Sighting& sighting : point.sightings) ++n_sightings[static_cast<size_t>(sighting.photo)];
-  }
-  std::vector<char> keep(n_photos, 0);
-  for (size_t photo = 0; photo < n_photos; ++photo) keep[photo] = n_sightings[photo] >= kMinSightings ? 1 : 0;
-  return keep;
+  DropWeakPoints(bundle);
+  return dropped;
 }
 
 }  // namespace
 
 CameraSample SelectSample(const survey::ColmapModel& model, const survey::ColmapObservations& observations, uint32_t camera_id, size_t max_photos,
                           size_t max_points) {
-  std::vector<const survey::ColmapImage*> photos = ConsecutivePhotos(model, camera_id, max_photos);
   CameraSample sample;
-  sample.points = CollectPoints(model, observations, photos);
-  const size_t n_all = sample.points.size();
-  sample.points = EvenlyChosen(std::move(sample.points), max_points);
-  if (n_all > 0) sample.share_of_points = static_cast<double>(sample.points.size()) / static_cast<double>(n_all);
-  Keep(LargestGroup(photos.size(), sample.points), photos, sample.points);
+  BundleProblem& bundle = sample.bundle;
+  bundle = CollectPoints(model, observations, ConsecutivePhotos(model, camera_id, max_photos));
+  const camera::Camera& camera = model.cameras.at(camera_id);
+  const bool centred = camera.PrincipalPoint() == Eigen::Vector2d(0.5 * Eigen::Vector2d(camera.width, camera.height));
+  bundle.lenses = {{.numbers = LensOf(camera).value_or(Lens{}), .camera = camera, .free_centre = !centred}};
+  sample.share_of_points = ChooseEvenly(bundle, max_points);
   // Leaving out a photo takes sightings from others' points. Each round but the last removes a photo, so this ends.
-  for (std::vector<char> keep = WellSeen(photos.size(), sample.points); std::find(keep.begin(), keep.end(), 0) != keep.end();
-       keep = WellSeen(photos.size(), sample.points)) {
-    Keep(keep, photos, sample.points);
-    Keep(LargestGroup(photos.size(), sample.points), photos, sample.points);
+  do {
+    KeepLargest(bundle);
+  } while (DropWeakPhotos(bundle));
+  for (uint32_t t = 0; t < bundle.tracks.size(); ++t) {
+    for (uint32_t e = bundle.tracks.first[t]; e < bundle.tracks.first[t + 1]; ++e) {
+      const BundlePhoto& photo = bundle.photos[bundle.tracks.entries[e].photo];
+      // Where the camera does not see a point, its distortion has no meaning.
+      bundle.agrees[e] = camera.ImgFromCam(photo.cam_from_enu * (bundle.point[t] - photo.centre)) ? 1 : 0;
+    }
   }
-  sample.cam_from_world.reserve(photos.size());
-  for (const survey::ColmapImage* photo : photos) sample.cam_from_world.push_back(photo->cam_from_world);
   return sample;
 }
 

@@ -14,7 +14,7 @@ namespace skyquilt::prepare::bundle {
 struct EntryTerm {
   Eigen::Vector2d residual = Eigen::Vector2d::Zero();
   Eigen::Matrix<double, 2, 7, Eigen::RowMajor> by_pose;
-  Eigen::Matrix<double, 2, 8, Eigen::RowMajor> by_lens;
+  Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor, 2, 16> by_lens;
   Eigen::Matrix<double, 2, 3, Eigen::RowMajor> by_point;
 };
 EntryTerm TermOf(const BundleProblem& bundle, uint32_t entry, const Eigen::Vector3d& x_in_enu);

@@ -1,9 +1,6 @@
 // How well the photos of a survey determine the lens: the standard deviations of the first radial distortion coefficient and of the focal length,
-// which COLMAP does not write. They follow from the normal equations of the bundle adjustment (Triggs et al., Bundle Adjustment - A Modern Synthesis,
-// 2000, section 6 and appendix A): poses, camera parameters and points are unknowns, points are eliminated, the seven degrees of freedom of the frame
-// are held.
-// ceres::Covariance cannot say it where the photos do not determine the lens: by sparse QR it fails there, by SVD it needs all points in one dense
-// matrix.
+// which COLMAP does not write. They are those of a bundle adjustment (AdjustmentAccuracy) by the model's observations alone: all have the same
+// weight, nothing is known beforehand of poses and lens, and the seven degrees of freedom of the frame are held.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +11,7 @@
 namespace skyquilt::prepare::bundle {
 
 struct LensAccuracy {
-  double k1_sigma = std::numeric_limits<double>::quiet_NaN();  // very large, but finite, when the photos do not determine k1
+  double k1_sigma = std::numeric_limits<double>::quiet_NaN();  // at most 1000: the photos do not determine k1
   // Relative to the focal length, likewise. By these photos alone: their tags, and an adjustment that held the focal length, do not count.
   double focal_sigma = std::numeric_limits<double>::quiet_NaN();
   double sigma0_px = 0.0;  // standard deviation of one pixel coordinate, from the residuals

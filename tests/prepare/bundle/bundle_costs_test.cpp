@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "core/base/random.h"
+#include "prepare/bundle/entry_term.h"
 #include "prepare/poses/seed/seed_rotation.h"
 
 namespace skyquilt::test {
@@ -152,6 +154,44 @@ TEST(Lens, IsTheCameraOfEveryModel) {
     }
   }
   EXPECT_FALSE(LensOf({camera::CameraModel::kOpencvFisheye, 1600, 1200, std::vector<double>(8, 1.0)}));
+}
+
+TEST(Lens, HoldsWhatTheModelDoesNotHave) {
+  const auto held = [](camera::CameraModel model, bool free_centre) {
+    std::vector<int> numbers =
+        HeldNumbers({model, 1600, 1200, std::vector<double>(static_cast<size_t>(camera::ModelParamCount(model)))}, free_centre);
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
+  };
+  EXPECT_EQ(held(camera::CameraModel::kSimplePinhole, false), std::vector<int>({1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(held(camera::CameraModel::kPinhole, false), std::vector<int>({2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(held(camera::CameraModel::kSimpleRadial, false), std::vector<int>({1, 2, 3, 5, 6, 7}));
+  EXPECT_EQ(held(camera::CameraModel::kRadial, true), std::vector<int>({1, 6, 7}));
+  EXPECT_EQ(held(camera::CameraModel::kOpencv, false), std::vector<int>({2, 3}));
+  EXPECT_EQ(held(camera::CameraModel::kRadialFisheye, false), std::vector<int>({1, 2}));
+  EXPECT_EQ(held(camera::CameraModel::kFullOpencv, false), std::vector<int>({2, 3}));
+  EXPECT_EQ(held(camera::CameraModel::kFullOpencv, true), std::vector<int>());
+}
+
+TEST(EntryTerm, OfACameraIsThatOfTheLens) {
+  BundleProblem bundle;
+  bundle.lenses = {{.camera = {camera::CameraModel::kOpencv, 1600, 1200, {1200.0, 1200.0, 790.0, 610.0, -0.05, 0.02, 1e-3, -2e-3}}, .unit_px = 2.0}};
+  bundle.lenses[0].numbers = *LensOf(bundle.lenses[0].camera);
+  const Eigen::Quaterniond down = prepare::poses::RotationFromAngles(30.0, -70.0, 5.0);
+  bundle.photos = {{.cam_from_enu = down, .centre = down.conjugate() * Eigen::Vector3d(1.0, 2.0, -60.0), .placed = true}};
+  bundle.tracks = {.first = {0, 1}, .entries = {{0, 0}}};
+  bundle.pixel = {{700.0, 500.0}};
+  const Eigen::Vector3d point(5.0, -3.0, 2.0);
+  const auto expected = TermOf(bundle, 0, point);
+  camera::Camera& camera = bundle.lenses[0].camera;
+  camera.model = camera::CameraModel::kFullOpencv;
+  camera.params.resize(12, 0.0);
+  const auto term = TermOf(bundle, 0, point);
+  EXPECT_LT((term.residual - expected.residual).norm(), 1e-9);
+  EXPECT_LT((term.by_pose - expected.by_pose).norm(), 1e-6 * expected.by_pose.norm());
+  EXPECT_LT((term.by_point - expected.by_point).norm(), 1e-6 * expected.by_point.norm());
+  // The second number is fy there, and not fy / fx.
+  EXPECT_LT((term.by_lens.middleCols<6>(2) - expected.by_lens.rightCols<6>()).norm(), 1e-6 * expected.by_lens.norm());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "core/base/errors.h"
 #include "core/base/json_text.h"
 #include "core/base/progress.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::bench {
@@ -65,12 +66,8 @@ TEST_F(Numerics, AFailedCaseIsInTheTableAndEndsTheCommand) {
   const NumericsResult result = RunNumerics({group}, true);
   EXPECT_EQ(result.Count(Verdict::kFailed), 1);
   EXPECT_EQ(result.Count(Verdict::kPassed), 1);
-  try {
-    ThrowIfFailed(result);
-    FAIL() << "nothing was thrown";
-  } catch (const base::FailedCheck& error) {
-    EXPECT_NE(std::string(error.what()).find("far off"), std::string::npos);
-  }
+  const std::string error = ErrorOf<base::FailedCheck>([&] { ThrowIfFailed(result); });
+  EXPECT_NE(error.find("far off"), std::string::npos);
   const BenchPage page = NumericsPage(result, "skyquilt bench numerics");
   EXPECT_NE(BenchText(page).find("FAILED"), std::string::npos);
   EXPECT_NE(BenchHtml(page).find("1 of 2"), std::string::npos);

@@ -10,7 +10,6 @@
 #include <csignal>
 #include <fstream>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/progress.h"
@@ -177,9 +176,7 @@ TEST_F(PixelCacheTest, MayBeEmpty) {
 }
 
 TEST_F(PixelCacheTest, StopsOnCancelWithoutLeavingAFile) {
-  base::RequestCancel();
-  EXPECT_THROW(Open(40), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { Open(40); });
   EXPECT_FALSE(std::filesystem::exists(file_));
   EXPECT_FALSE(PartialLeft());
 }

@@ -110,12 +110,8 @@ TEST(ExportTour, TooLittleRoomIsAnErrorThatNamesTheLeast) {
   sample.Export();
   sample.options.size_mb = 0.005;
   const std::string before = base::ReadFile(sample.out / "data" / "manifest.json.js");
-  try {
-    sample.Export();
-    FAIL() << "nothing thrown";
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("needs at least"), std::string::npos) << error.what();
-  }
+  const std::string error = InputErrorOf([&] { sample.Export(); });
+  EXPECT_NE(error.find("needs at least"), std::string::npos) << error;
   EXPECT_EQ(base::ReadFile(sample.out / "data" / "manifest.json.js"), before) << "the earlier export stays";
 }
 

@@ -16,7 +16,6 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* kStopView = R"({"type":"stop","seq":7})";
 
 TEST_F(HostileTest, RequestsThatAreNotHttp) {
-  Start();
   const std::string cookie = Login();
   const std::string host = "Host: " + host_ + "\r\n";
   const std::string attacks[] = {
@@ -41,7 +40,6 @@ TEST_F(HostileTest, RequestsThatAreNotHttp) {
 }
 
 TEST_F(HostileTest, BodyOfARefusedRequestIsNotTheNextRequest) {
-  Start();
   const std::string cookie = Login();
   const std::string hidden = Request("GET /data/text", cookie);
   for (const std::string start : {"POST /", "PUT /data/x", "GET /data/text"}) {
@@ -56,7 +54,6 @@ TEST_F(HostileTest, BodyOfARefusedRequestIsNotTheNextRequest) {
 }
 
 TEST_F(HostileTest, SizesAreLimited) {
-  Start();
   const std::string cookie = Login();
   EXPECT_EQ(Status(Ask("GET /", cookie, "X: " + std::string(9000, 'x') + "\r\n")), 431);
   std::string many;
@@ -178,7 +175,6 @@ TEST_F(HostileTest, WriteWithoutProgressEndsTheClient) {
 }
 
 TEST_F(HostileTest, MalformedFramesCloseTheirConnectionOnly) {
-  Start();
   const std::string cookie = Login();
   const auto other = OpenWebsocket(cookie);
   ASSERT_TRUE(other);
@@ -232,7 +228,6 @@ TEST_F(HostileTest, FloodOfEmptyFragmentsIsEnded) {
 }
 
 TEST_F(HostileTest, ServiceGoesOnAfterFileDescriptorsRanOut) {
-  Start();
   const std::string cookie = Login();
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
@@ -256,7 +251,6 @@ TEST_F(HostileTest, ServiceGoesOnAfterFileDescriptorsRanOut) {
 }
 
 TEST_F(HostileTest, ServerEndsAtOnceWithOpenConnections) {
-  Start();
   const std::string cookie = Login();
   RawClient silent(server_->port()), half(server_->port()), waiting(server_->port());
   half.Send("GET / HTTP/1.1\r\n");

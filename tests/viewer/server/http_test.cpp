@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "core/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/viewer/server/server_fixture.h"
 
 namespace skyquilt::viewer {
@@ -12,7 +13,6 @@ namespace {
 using HttpTest = ServerTest;
 
 TEST_F(HttpTest, LinkIsExchangedForACookieOnce) {
-  Start();
   std::mutex mutex;
   std::string next;
   server_->OnLinkUsed([&](Right right, const std::string& link) {
@@ -45,14 +45,12 @@ TEST_F(HttpTest, LinkIsExchangedForACookieOnce) {
 }
 
 TEST_F(HttpTest, HeadDoesNotUseUpTheLink) {
-  Start();
   const std::string target = LinkTarget();
   EXPECT_EQ(Status(Ask("HEAD " + target, "")), 403);
   EXPECT_EQ(LinkTarget(), target);
 }
 
 TEST_F(HttpTest, NothingWithoutAValidCookie) {
-  Start();
   const std::string good = Login();
   const std::string name = good.substr(0, good.find('='));
   for (const std::string& cookie : {std::string(), name + "=", name + "=" + std::string(64, '0'), good + "0", "x" + good, std::string("garbage")}) {
@@ -66,7 +64,6 @@ TEST_F(HttpTest, NothingWithoutAValidCookie) {
 }
 
 TEST_F(HttpTest, GuessingTokensIsStopped) {
-  Start();
   const std::string cookie = Login();
   for (int i = 0; i < 20; ++i) EXPECT_EQ(Status(Ask("GET /?token=" + std::to_string(i), "")), 403);
   EXPECT_EQ(Status(Ask("GET /?token=1", "")), 429);
@@ -99,7 +96,6 @@ TEST_F(HttpTest, ForeignHostsAreRefusedFirst) {
 }
 
 TEST_F(HttpTest, EveryAnswerHasTheSecurityHeaders) {
-  Start();
   const std::string cookie = Login();
   for (const auto& reply : {Ask("GET /", cookie), Ask("GET /", ""), Ask("GET /data/text", cookie), Ask("GET /data/nothing", cookie),
                             Ask("DELETE /", cookie), AskRaw("nonsense\r\n\r\n"), AskRaw("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"),
@@ -122,7 +118,6 @@ TEST_F(HttpTest, EveryAnswerHasTheSecurityHeaders) {
 }
 
 TEST_F(HttpTest, PathsThatLeaveTheFixedNamesReachNothing) {
-  Start();
   const std::string cookie = Login();
   for (const std::string path : {"/data/../text",
                                  "/data/%2e%2e/text",
@@ -156,7 +151,6 @@ TEST_F(HttpTest, PathsThatLeaveTheFixedNamesReachNothing) {
 }
 
 TEST_F(HttpTest, DataIsAskedWithPathAndQuery) {
-  Start();
   const std::string cookie = Login();
   const auto reply = Ask("GET /data/text?a=%20", cookie);
   EXPECT_EQ(Status(reply), 200);
@@ -169,7 +163,6 @@ TEST_F(HttpTest, DataIsAskedWithPathAndQuery) {
 }
 
 TEST_F(HttpTest, SourceThatThrowsIsAnErrorWithoutItsReason) {
-  Start();
   const std::string cookie = Login();
   const auto reply = Ask("GET /data/throws", cookie);
   EXPECT_EQ(Status(reply), 500);
@@ -181,7 +174,6 @@ TEST_F(HttpTest, SourceThatThrowsIsAnErrorWithoutItsReason) {
 }
 
 TEST_F(HttpTest, MethodsThatAreNotAllowed) {
-  Start();
   const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
   for (const std::string start :
        {"POST /data/text", "DELETE /data/text", "PUT /", "PUT /app.js", "OPTIONS /data/text", "PATCH /", "BREW /", "TRACE /"}) {
@@ -195,7 +187,6 @@ TEST_F(HttpTest, MethodsThatAreNotAllowed) {
 }
 
 TEST_F(HttpTest, PutOnlyFromTheOwnPage) {
-  Start();
   const std::string cookie = Login();
   for (const std::string& origin : {std::string(), std::string("Origin: null\r\n"), std::string("Origin: http://evil.example\r\n"),
                                     "Origin: https://" + host_ + "\r\n", "Origin: http://localhost:" + std::to_string(server_->port()) + "\r\n",
@@ -208,7 +199,6 @@ TEST_F(HttpTest, PutOnlyFromTheOwnPage) {
 }
 
 TEST_F(HttpTest, TagsOfDocumentsPass) {
-  Start();
   const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
   const auto kept = Ask("GET /data/kept", cookie);
   ASSERT_EQ(Status(kept), 200);
@@ -225,7 +215,6 @@ TEST_F(HttpTest, TagsOfDocumentsPass) {
 }
 
 TEST_F(HttpTest, TagOfOneRequestIsNotThatOfTheNext) {
-  Start();
   const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
   RawClient client(server_->port());
   for (const std::string line : {"If-Match: \"a1\"\r\n", ""}) {
@@ -236,7 +225,6 @@ TEST_F(HttpTest, TagOfOneRequestIsNotThatOfTheNext) {
 }
 
 TEST_F(HttpTest, PutOfAMegabyteAndMore) {
-  Start();
   const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
   const std::string body(1U << 20U, 'm');
   EXPECT_EQ(Status(Ask("PUT /data/big", cookie, origin, body)), 204);
@@ -252,7 +240,6 @@ TEST_F(HttpTest, PutOfAMegabyteAndMore) {
 }
 
 TEST_F(HttpTest, ExpectContinueIsAnswered) {
-  Start();
   const std::string cookie = Login();
   RawClient client(server_->port());
   client.Send(Request("PUT /data/x", cookie, "Origin: " + origin_ + "\r\nExpect: 100-continue\r\nContent-Length: 3\r\n"));
@@ -263,7 +250,6 @@ TEST_F(HttpTest, ExpectContinueIsAnswered) {
 }
 
 TEST_F(HttpTest, KeepAliveHeadAndPipelinedRequests) {
-  Start();
   const std::string cookie = Login();
   RawClient client(server_->port());
   client.Send(Request("HEAD /data/text", cookie));
@@ -279,7 +265,6 @@ TEST_F(HttpTest, KeepAliveHeadAndPipelinedRequests) {
 }
 
 TEST_F(HttpTest, FilesAreSentWholeAndMissingOnesAreNotFound) {
-  Start();
   const std::string cookie = Login();
   data_.file = std::filesystem::path(::testing::TempDir()) / "skyquilt_server_test.glb";
   std::string content(3U << 20U, '\0');
@@ -303,16 +288,10 @@ TEST_F(HttpTest, FilesAreSentWholeAndMissingOnesAreNotFound) {
 }
 
 TEST_F(HttpTest, PortInUseAndForeignAddressesAreUsageErrors) {
-  Start();
   RecordingHandler handler;
   RecordingData data;
   const auto message = [&](const ServerOptions& options) -> std::string {
-    try {
-      const Server second(options, handler, data);
-    } catch (const base::UsageError& error) {
-      return error.what();
-    }
-    return "";
+    return UsageErrorOf([&] { const Server second(options, handler, data); });
   };
   const std::string in_use = message({.port = server_->port()});
   EXPECT_NE(in_use.find(std::to_string(server_->port())), std::string::npos);
@@ -324,7 +303,6 @@ TEST_F(HttpTest, PortInUseAndForeignAddressesAreUsageErrors) {
 }
 
 TEST_F(HttpTest, PortCanBeUsedAgainAtOnce) {
-  Start();
   const int port = server_->port();
   RawClient client(port);
   client.Send(Request("GET /", Login()));

@@ -91,7 +91,10 @@ class RecordingData : public DataSource {
 
 class ServerTest : public ::testing::Test {
  protected:
-  void Start(ServerOptions options = {}) {
+  void SetUp() override { Start({}); }
+  // A server with these options instead.
+  void Start(ServerOptions options) {
+    server_.reset();
     options.assets = {{"/", "text/html; charset=utf-8", "<p>front end</p>"}, {"/app.js", "text/javascript; charset=utf-8", "let a = 1;"}};
     server_ = std::make_unique<Server>(options, handler_, data_);
     handler_.server = server_.get();

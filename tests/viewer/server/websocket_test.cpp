@@ -12,7 +12,6 @@ constexpr const char* kStop = R"({"type":"stop","seq":7})";
 constexpr const char* kBad = R"({"type":"nonsense"})";
 
 TEST_F(WebsocketTest, UpgradeNeedsCookieOriginAndPath) {
-  Start();
   const std::string cookie = Login();
   EXPECT_EQ(Status(AskRaw(UpgradeRequest("", origin_))), 403);
   EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie + "x", origin_))), 403);
@@ -32,7 +31,6 @@ TEST_F(WebsocketTest, UpgradeNeedsCookieOriginAndPath) {
 }
 
 TEST_F(WebsocketTest, MessagesReachTheHandlerAndTextsComeBack) {
-  Start();
   auto client = OpenWebsocket(Login());
   ASSERT_TRUE(client);
   EXPECT_EQ(server_->clients(), 1);
@@ -50,7 +48,6 @@ TEST_F(WebsocketTest, MessagesReachTheHandlerAndTextsComeBack) {
 }
 
 TEST_F(WebsocketTest, FirstMessageMustBeHelloInThisVersion) {
-  Start();
   const std::string cookie = Login();
   for (const std::string text :
        {R"({"type":"hello","version":2})", R"({"type":"hello"})", kStop, kBad, "", "not json", R"({"type":"hello","version":1)"}) {
@@ -81,7 +78,6 @@ TEST_F(WebsocketTest, SilentClientIsPingedThenClosed) {
 }
 
 TEST_F(WebsocketTest, BadMessagesAreAnsweredAndTenInARowClose) {
-  Start();
   const auto client = OpenWebsocket(Login());
   ASSERT_TRUE(client);
   for (int round = 0; round < 3; ++round) {
@@ -95,7 +91,6 @@ TEST_F(WebsocketTest, BadMessagesAreAnsweredAndTenInARowClose) {
 }
 
 TEST_F(WebsocketTest, BinaryMessagesClose) {
-  Start();
   const auto client = OpenWebsocket(Login());
   ASSERT_TRUE(client);
   client->Send(MakeFrame(2, kStop));
@@ -115,7 +110,6 @@ TEST_F(WebsocketTest, TooManyMessagesOrPingsClose) {
 }
 
 TEST_F(WebsocketTest, HandlerThatThrowsClosesItsClientOnly) {
-  Start();
   const std::string cookie = Login();
   const auto first = OpenWebsocket(cookie), second = OpenWebsocket(cookie);
   ASSERT_TRUE(first && second);
@@ -140,7 +134,6 @@ TEST_F(WebsocketTest, NumberOfClientsIsLimited) {
 }
 
 TEST_F(WebsocketTest, ManyThreadsSendToSeveralClientsInOrder) {
-  Start();
   const std::string cookie = Login();
   std::vector<std::unique_ptr<RawClient>> clients;
   std::vector<ClientId> ids;
@@ -175,7 +168,6 @@ TEST_F(WebsocketTest, ManyThreadsSendToSeveralClientsInOrder) {
 }
 
 TEST_F(WebsocketTest, LargeMessageArrivesInOneFrame) {
-  Start();
   const auto client = OpenWebsocket(Login());
   ASSERT_TRUE(client);
   const std::string bytes(9U << 20U, 'f');

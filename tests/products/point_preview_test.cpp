@@ -5,9 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/base/order_statistics.h"

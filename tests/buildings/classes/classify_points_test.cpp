@@ -9,7 +9,6 @@
 #include <set>
 #include <string>
 
-#include "core/base/errors.h"
 #include "tests/buildings/sample_buildings.h"
 #include "tests/buildings/sample_clouds.h"
 #include "tests/support/error_of.h"

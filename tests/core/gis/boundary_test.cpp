@@ -5,9 +5,7 @@
 #include <ogrsf_frmts.h>
 #include <rapidcheck/gtest.h>
 
-#include <cmath>
 #include <limits>
-#include <memory>
 #include <string>
 
 #include "core/base/errors.h"

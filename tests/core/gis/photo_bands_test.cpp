@@ -4,7 +4,6 @@
 
 #include <limits>
 
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "tests/support/error_of.h"
 #include "tests/support/in_temporary_folder.h"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <ogrsf_frmts.h>
 
-#include <ctime>
 #include <limits>
 #include <memory>
 #include <string>

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <fstream>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"

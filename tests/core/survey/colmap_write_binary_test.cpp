@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <string>
 
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/progress.h"
 #include "core/base/random.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 
 #include "evaluate/surface/photo_errors.h"
 #include "tests/evaluate/photos/nadir_view.h"

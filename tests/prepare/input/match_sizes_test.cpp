@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/errors.h"
 #include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::prepare::input {

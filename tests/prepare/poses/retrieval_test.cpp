@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/base/errors.h"
 #include "tests/prepare/poses/made_photos.h"
 #include "tests/support/error_of.h"
 

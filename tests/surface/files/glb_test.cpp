@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/file.h"
 #include "surface/files/glb_writer.h"
 #include "surface/files/surface_files.h"
 #include "tests/support/error_of.h"

@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 
-#include "core/base/errors.h"
 #include "core/base/progress.h"
 #include "made_meshes.h"
 #include "surface/mesh/mesh_tools.h"

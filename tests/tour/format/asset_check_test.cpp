@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "tests/support/error_of.h"
 #include "tests/tour/format/sample_assets.h"
 

@@ -8,7 +8,6 @@
 #include <csignal>
 
 #include "core/base/json_text.h"
-#include "core/base/sha256.h"
 #include "tests/tour/format/sample_assets.h"
 #include "tests/tour/format/sample_tour.h"
 #include "tests/viewer/data/sample_project.h"

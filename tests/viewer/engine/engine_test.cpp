@@ -13,7 +13,6 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "products/camera_path.h"
-#include "products/render_views.h"
 #include "tests/support/connect_alone.h"
 #include "tests/support/in_temporary_folder.h"
 #include "tests/viewer/engine/whole_scene.h"

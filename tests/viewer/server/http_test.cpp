@@ -1,6 +1,4 @@
 // The server over HTTP: launch link, cookies, hosts, methods, paths, sizes, files.
-#include <algorithm>
-#include <atomic>
 #include <fstream>
 
 #include "core/base/errors.h"

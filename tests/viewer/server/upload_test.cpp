@@ -1,5 +1,4 @@
 // Uploads: large bodies, a limited number at a time, and clients that do not finish them.
-#include <atomic>
 #include <chrono>
 #include <thread>
 

@@ -1,5 +1,4 @@
 // The WebSocket: upgrade, hello, messages in both directions, limits.
-#include <atomic>
 #include <thread>
 
 #include "tests/viewer/server/server_fixture.h"

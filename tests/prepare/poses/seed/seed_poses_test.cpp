@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/errors.h"
 #include "core/linear/linear.h"
 #include "tests/prepare/poses/seed/made_survey.h"
 #include "tests/support/error_of.h"

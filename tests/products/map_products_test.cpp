@@ -23,7 +23,10 @@
 namespace skyquilt::products {
 namespace {
 
-using MapProductsTest = InTemporaryFolder;
+class MapProductsTest : public InTemporaryFolder {
+ protected:
+  AnalyticScene scene_;
+};
 
 // Reads the file like another program: with GDAL's geo-transform, CRS and PROJ instead of our projections.
 class OtherProgram {
@@ -184,8 +187,7 @@ TEST_F(MapProductsTest, PlacesWithoutSurfaceHaveNoData) {
 }
 
 TEST_F(MapProductsTest, WithoutGeoReferenceTheyAreLocal) {
-  const AnalyticScene scene;
-  const MapProducts products = MakeMapProducts(scene.Info({}, false), scene.Caster(), ProductOptions{}, folder_.path());
+  const MapProducts products = MakeMapProducts(scene_.Info({}, false), scene_.Caster(), ProductOptions{}, folder_.path());
   const OtherProgram dsm(products.dsm);
   EXPECT_TRUE(dsm.dataset()->GetSpatialRef() == nullptr || dsm.dataset()->GetSpatialRef()->IsEmpty());
   EXPECT_EQ(dsm.transform()[0], -60.0);
@@ -205,10 +207,9 @@ std::string Item(const std::filesystem::path& file, const char* key) {
 }
 
 TEST_F(MapProductsTest, SayHowAccurateTheirPlaceIs) {
-  const AnalyticScene scene;
-  scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
+  scene_::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   info.accuracy = {.scale_percent = 0.412345, .tilt_deg = 0.3, .yaw_deg = 0.25, .horizontal_m = 1.53};
-  const MapProducts products = MakeMapProducts(info, scene.Caster(), ProductOptions{}, folder_.path());
+  const MapProducts products = MakeMapProducts(info, scene_.Caster(), ProductOptions{}, folder_.path());
   for (const std::filesystem::path& file : {products.orthophoto, products.dsm}) {
     EXPECT_EQ(Item(file, "GEOREFERENCE"), "fitted to GPS tags");
     EXPECT_EQ(Item(file, "ACCURACY_SCALE_PERCENT"), "0.412");
@@ -231,13 +232,12 @@ TEST_F(MapProductsTest, SayHowAccurateTheirPlaceIs) {
 
 // A level scene 100 m above the ellipsoid, where the geoid is 48.411 m above it.
 TEST_F(MapProductsTest, ConvertHeights) {
-  const AnalyticScene scene;
-  scene::SceneInfo info = scene.Info({52.0, -1.5, 100.0 - scene.ground_z}, true);
+  scene_::SceneInfo info = scene_.Info({52.0, -1.5, 100.0 - scene_.ground_z}, true);
   ProductOptions options;
   options.ortho = false;
   const auto ground = [&](const std::string& vertical) {
     options.vertical = vertical;
-    const MapProducts products = MakeMapProducts(info, scene.Caster(), options, folder_.path());
+    const MapProducts products = MakeMapProducts(info, scene_.Caster(), options, folder_.path());
     const OtherProgram dsm(products.dsm);
     const Eigen::Vector2d pixel = dsm.PixelOf(-1.5, 52.0) + Eigen::Vector2d(-20.0, 20.0);  // the ground 14 m south-west of the origin
     return static_cast<double>(dsm.Band(1)[static_cast<size_t>(pixel.y()) * static_cast<size_t>(dsm.Width()) + static_cast<size_t>(pixel.x())]);
@@ -318,11 +318,10 @@ TEST(PlaceMetadata, NamesTheGeoreference) {
 }
 
 TEST_F(MapProductsTest, LargeMapsHaveOverviewsAndTiles) {
-  const AnalyticScene scene;
   ProductOptions options;
   options.resolution_m = 0.1;
   options.dsm = false;
-  const MapProducts products = MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), options, folder_.path());
+  const MapProducts products = MakeMapProducts(scene_.Info({41.38, 2.17, 50.0}, true), scene_.Caster(), options, folder_.path());
   const OtherProgram ortho(products.orthophoto);
   EXPECT_GE(ortho.dataset()->GetRasterBand(1)->GetOverviewCount(), 2);
   int block_width = 0;
@@ -336,9 +335,8 @@ TEST_F(MapProductsTest, LargeMapsHaveOverviewsAndTiles) {
 }
 
 TEST_F(MapProductsTest, PreviewsLieInTheLocalFrame) {
-  const AnalyticScene scene;
   // Far from the zone's central meridian, map north and true north differ by two degrees.
-  MakeMapProducts(scene.Info({50.0, 5.9, 50.0}, true), scene.Caster(), ProductOptions{}, folder_.path());
+  MakeMapProducts(scene_.Info({50.0, 5.9, 50.0}, true), scene_.Caster(), ProductOptions{}, folder_.path());
   const image::Image8 picture = image::LoadRgb8(folder_.path() / "orthophoto.png");
   const auto bounds = base::ParseJson(base::ReadFile(folder_.path() / "orthophoto.json"));
   EXPECT_EQ(bounds["min_enu"][0], -60.0);
@@ -354,7 +352,7 @@ TEST_F(MapProductsTest, PreviewsLieInTheLocalFrame) {
       const bool near_edge = std::abs(east) < 1 || std::abs(east - 10) < 1 || std::abs(east - 40) < 1 || std::abs(north + 20) < 1 ||
                              std::abs(north - 10) < 1 || std::abs(east) > 59 || std::abs(north) > 49;
       if (near_edge) continue;
-      const int channel = scene.InHouse(east, north) ? 2 : east > 0 ? 0 : 1;
+      const int channel = scene_.InHouse(east, north) ? 2 : east > 0 ? 0 : 1;
       if (picture.At(x, y)[channel] != 255 || picture.At(x, y)[(channel + 1) % 3] != 0) ++wrong;
     }
   }
@@ -364,8 +362,7 @@ TEST_F(MapProductsTest, PreviewsLieInTheLocalFrame) {
 }
 
 TEST_F(MapProductsTest, TooManyCellsAreRefusedOrCoarsened) {
-  const AnalyticScene scene;
-  const scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
+  const scene_::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   ProductOptions options;
   options.max_pixels = 20000;
   const gis::MapGrid coarse = PlanMapGrid(info, options);
@@ -381,8 +378,7 @@ TEST_F(MapProductsTest, TooManyCellsAreRefusedOrCoarsened) {
 }
 
 TEST_F(MapProductsTest, RaysStayInTheBoxesAboveTheirCell) {
-  const AnalyticScene scene;
-  scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
+  scene_::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   info.blocks[0].max_enu.z() = 8.0;
   const gis::MapGrid grid = PlanMapGrid(info, ProductOptions{});
   const MapRayGenerator maker(info, grid);
@@ -398,9 +394,8 @@ TEST_F(MapProductsTest, RaysStayInTheBoxesAboveTheirCell) {
 }
 
 TEST_F(MapProductsTest, RaysAreColumnsAsWideAsTheirCell) {
-  const AnalyticScene scene;
   for (const bool georeferenced : {true, false}) {
-    const scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, georeferenced);
+    const scene_::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, georeferenced);
     ProductOptions options;
     options.resolution_m = 0.75;
     const gis::MapGrid grid = PlanMapGrid(info, options);
@@ -416,8 +411,7 @@ TEST_F(MapProductsTest, RaysAreColumnsAsWideAsTheirCell) {
 }
 
 TEST_F(MapProductsTest, CancellingLeavesNoFileBehind) {
-  const AnalyticScene scene;
-  ExpectStopsWhenAsked([&] { MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), ProductOptions{}, folder_.path()); });
+  ExpectStopsWhenAsked([&] { MakeMapProducts(scene_.Info({41.38, 2.17, 50.0}, true), scene_.Caster(), ProductOptions{}, folder_.path()); });
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 

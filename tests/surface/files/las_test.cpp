@@ -6,13 +6,12 @@
 
 #include "core/base/file.h"
 #include "surface/files/surface_files.h"
-#include "tests/support/in_temporary_folder.h"
 #include "tests/surface/files/sample_surface.h"
 
 namespace skyquilt::surface {
 namespace {
 
-using Las = InTemporaryFolder;
+using Las = InToronto;
 
 constexpr FileSelection kOnlyCloud = {.glb = false, .obj = false, .ply = false, .cloud = true, .tiles = false};
 
@@ -37,9 +36,8 @@ struct Las {
 };
 
 TEST_F(Las, HeaderIsThatOfVersion14) {
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
   const std::vector<CloudPoint> points = SamplePoints(100);
-  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder_.path());
+  SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path());
   files.AddPoints(points);
   files.Close();
   const Las las(folder_ / "cloud.las");
@@ -97,9 +95,8 @@ TEST_F(Las, PointsComeBackToAMillimetre) {
 }
 
 TEST_F(Las, SplitsAboveTheLimitIntoCompleteFiles) {
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
   const std::vector<CloudPoint> points = SamplePoints(25);
-  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder_.path(), 10);
+  SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path(), 10);
   files.AddPoints(std::span(points).first(7));
   files.AddPoints(std::span(points).subspan(7));
   const std::vector<WrittenFile> table = files.Close();
@@ -112,7 +109,7 @@ TEST_F(Las, SplitsAboveTheLimitIntoCompleteFiles) {
     EXPECT_EQ(las.bytes.size(), las.PointOffset(las.count()));
     double min_z = HUGE_VAL;
     for (size_t i = 0; i < las.count(); ++i, ++next) {
-      EXPECT_LT((las.Point(i) - frame.MapFromEnu(points[next].position)).cwiseAbs().maxCoeff(), 0.00051);
+      EXPECT_LT((las.Point(i) - frame_.MapFromEnu(points[next].position)).cwiseAbs().maxCoeff(), 0.00051);
       min_z = std::min(min_z, las.Point(i).z());
     }
     EXPECT_EQ(las.At<double>(219), min_z) << "bounds of this part alone";
@@ -123,19 +120,17 @@ TEST_F(Las, SplitsAboveTheLimitIntoCompleteFiles) {
 }
 
 TEST_F(Las, ExactlyTheLimitIsOneFile) {
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
-  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder_.path(), 10);
+  SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path(), 10);
   files.AddPoints(SamplePoints(10));
   files.Close();
   EXPECT_EQ(Las(folder_ / "cloud.las").count(), 10U);
 }
 
 TEST_F(Las, PointsThatAreNotFiniteAreLeftOut) {
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
   std::vector<CloudPoint> points = SamplePoints(3);
   points[1].position.y() = std::numeric_limits<double>::quiet_NaN();
   points[2].normal.setZero();
-  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder_.path());
+  SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path());
   files.AddPoints(points);
   files.Close();
   EXPECT_EQ(Las(folder_ / "cloud.las").count(), 2U);

@@ -10,17 +10,14 @@
 #include "core/base/json_text.h"
 #include "surface/files/file_writer.h"
 #include "tests/support/error_of.h"
-#include "tests/support/in_temporary_folder.h"
 #include "tests/surface/files/sample_surface.h"
 
 namespace skyquilt::surface {
 namespace {
 
-using SurfaceFilesTest = InTemporaryFolder;
+using SurfaceFilesTest = InToronto;
 
 using Names = std::vector<std::string>;
-
-const geo::Geodetic kToronto = {43.64, -79.39, 100.0};
 
 void WriteAll(const MapFrame& frame, const std::filesystem::path& folder, std::vector<WrittenFile>* table = nullptr) {
   SurfaceFiles files(frame, {}, kSampleTile_m, folder);
@@ -32,7 +29,7 @@ void WriteAll(const MapFrame& frame, const std::filesystem::path& folder, std::v
 
 TEST_F(SurfaceFilesTest, TableTellsWhatWasWritten) {
   std::vector<WrittenFile> table;
-  WriteAll(MapFrame(SampleInfo(kToronto)), folder_.path(), &table);
+  WriteAll(TorontoFrame(), folder_.path(), &table);
   ASSERT_EQ(table.size(), 7U);
   int64_t bytes = 0;
   for (const WrittenFile& row : table) {
@@ -57,7 +54,7 @@ TEST_F(SurfaceFilesTest, TableTellsWhatWasWritten) {
 
 TEST_F(SurfaceFilesTest, SameInputGivesTheSameBytes) {
   const TemporaryFolder one, other;
-  const MapFrame frame(SampleInfo(kToronto));
+  const MapFrame frame = TorontoFrame();
   WriteAll(frame, one.path());
   WriteAll(frame, other.path());
   for (const std::string& name : NamesIn(one.path())) {
@@ -67,9 +64,8 @@ TEST_F(SurfaceFilesTest, SameInputGivesTheSameBytes) {
 }
 
 TEST_F(SurfaceFilesTest, LeaveNothingWithoutClose) {
-  const MapFrame frame(SampleInfo(kToronto));
   {
-    SurfaceFiles files(frame, {}, kSampleTile_m, folder_.path(), 100);
+    SurfaceFiles files(frame_, {}, kSampleTile_m, folder_.path(), 100);
     for (const TexturedTile& tile : SamplePyramid()) files.Add(tile);
     files.AddPoints(SamplePoints(500));
     for (const std::string& name : NamesIn(folder_.path())) EXPECT_TRUE(name.ends_with(".partial")) << name;
@@ -78,12 +74,11 @@ TEST_F(SurfaceFilesTest, LeaveNothingWithoutClose) {
 }
 
 TEST_F(SurfaceFilesTest, AnOldSurfaceStaysUntilTheNewOneIsComplete) {
-  const MapFrame frame(SampleInfo(kToronto));
-  WriteAll(frame, folder_.path());
+  WriteAll(frame_, folder_.path());
   const Names before = NamesIn(folder_.path());
   const std::string old_mesh = base::ReadFile(folder_ / "mesh.glb");
   {
-    SurfaceFiles files(frame, {}, kSampleTile_m, folder_.path());
+    SurfaceFiles files(frame_, {}, kSampleTile_m, folder_.path());
     files.Add(SampleTile({0, 7, 7}));
   }
   EXPECT_EQ(NamesIn(folder_.path()), before);
@@ -91,9 +86,8 @@ TEST_F(SurfaceFilesTest, AnOldSurfaceStaysUntilTheNewOneIsComplete) {
 }
 
 TEST_F(SurfaceFilesTest, ANewSurfaceReplacesAllOfTheOldOne) {
-  const MapFrame frame(SampleInfo(kToronto));
   {
-    SurfaceFiles files(frame, {}, kSampleTile_m, folder_.path(), 100);
+    SurfaceFiles files(frame_, {}, kSampleTile_m, folder_.path(), 100);
     for (const TexturedTile& tile : SamplePyramid()) files.Add(tile);
     files.AddPoints(SamplePoints(500));
     files.Close();
@@ -104,7 +98,7 @@ TEST_F(SurfaceFilesTest, ANewSurfaceReplacesAllOfTheOldOne) {
     std::ofstream(folder_ / name) << "x";
   }
   {
-    SurfaceFiles files(frame, {.glb = true, .obj = true, .ply = false, .cloud = false, .tiles = true}, kSampleTile_m, folder_.path());
+    SurfaceFiles files(frame_, {.glb = true, .obj = true, .ply = false, .cloud = false, .tiles = true}, kSampleTile_m, folder_.path());
     files.Add(SampleTile({0, 7, 7}));
     files.Close();
   }
@@ -114,7 +108,7 @@ TEST_F(SurfaceFilesTest, ANewSurfaceReplacesAllOfTheOldOne) {
 }
 
 TEST_F(SurfaceFilesTest, AnEmptySurfaceHasOnlyItsGeoReference) {
-  const MapFrame frame(SampleInfo(kToronto, false));
+  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}, false));
   SurfaceFiles files(frame, {}, kSampleTile_m, folder_.path());
   files.Add(TexturedTile());
   files.AddPoints({});
@@ -123,8 +117,7 @@ TEST_F(SurfaceFilesTest, AnEmptySurfaceHasOnlyItsGeoReference) {
 }
 
 TEST_F(SurfaceFilesTest, OnlyWhatIsSelectedIsWritten) {
-  const MapFrame frame(SampleInfo(kToronto));
-  SurfaceFiles files(frame, {.glb = false, .obj = false, .ply = true, .cloud = false, .tiles = false}, kSampleTile_m, folder_.path());
+  SurfaceFiles files(frame_, {.glb = false, .obj = false, .ply = true, .cloud = false, .tiles = false}, kSampleTile_m, folder_.path());
   files.Add(SampleTile({0, 0, 0}));
   files.AddPoints(SamplePoints(5));
   files.Close();
@@ -132,17 +125,16 @@ TEST_F(SurfaceFilesTest, OnlyWhatIsSelectedIsWritten) {
 }
 
 TEST_F(SurfaceFilesTest, GeoReferenceTellsHowToReadTheRest) {
-  const MapFrame frame(SampleInfo(kToronto));
-  WriteAll(frame, folder_.path());
+  WriteAll(frame_, folder_.path());
   const auto json = base::ParseJson(base::ReadFile(folder_ / "georeference.json"));
   EXPECT_EQ(json["crs"], "EPSG:32617");
-  EXPECT_EQ(json["offset"].get<std::vector<double>>(), std::vector<double>(frame.offset().data(), frame.offset().data() + 3));
+  EXPECT_EQ(json["offset"].get<std::vector<double>>(), std::vector<double>(frame_.offset().data(), frame_.offset().data() + 3));
   EXPECT_EQ(json["origin"]["latitude_deg"], 43.64);
   EXPECT_EQ(json["vertical"], "WGS84 ellipsoid (EPSG:4979)");
   const Names lines = Lines(base::ReadFile(folder_ / "offset.txt"));
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0], "WGS84 UTM 17N");
-  EXPECT_EQ(lines[1], std::to_string(std::lround(frame.offset().x())) + " " + std::to_string(std::lround(frame.offset().y())));
+  EXPECT_EQ(lines[1], std::to_string(std::lround(frame_.offset().x())) + " " + std::to_string(std::lround(frame_.offset().y())));
 }
 
 TEST_F(SurfaceFilesTest, PolarZonesAreNamedByTheirCode) {
@@ -153,20 +145,18 @@ TEST_F(SurfaceFilesTest, PolarZonesAreNamedByTheirCode) {
 
 TEST_F(SurfaceFilesTest, AFolderThatCannotBeWrittenIsNamed) {
   std::ofstream(folder_ / "file") << "x";
-  const MapFrame frame(SampleInfo(kToronto));
-  const std::string message = InputErrorOf([&] { SurfaceFiles(frame, {}, kSampleTile_m, folder_ / "file" / "inside"); });
+  const std::string message = InputErrorOf([&] { SurfaceFiles(frame_, {}, kSampleTile_m, folder_ / "file" / "inside"); });
   EXPECT_NE(message.find("file"), std::string::npos) << message;
 }
 
 // A limit on the size of files stands for a full disk: the system refuses to write in the same way.
 TEST_F(SurfaceFilesTest, AFullDiskNamesTheFileAndLeavesNothing) {
-  const MapFrame frame(SampleInfo(kToronto));
   rlimit before = {};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   std::string message;
   {
-    SurfaceFiles files(frame, {.glb = true, .obj = false, .ply = false, .cloud = false, .tiles = false}, kSampleTile_m, folder_.path());
+    SurfaceFiles files(frame_, {.glb = true, .obj = false, .ply = false, .cloud = false, .tiles = false}, kSampleTile_m, folder_.path());
     files.Add(SampleTile({0, 0, 0}));
     const rlimit small = {1000, before.rlim_max};
     setrlimit(RLIMIT_FSIZE, &small);
@@ -179,8 +169,7 @@ TEST_F(SurfaceFilesTest, AFullDiskNamesTheFileAndLeavesNothing) {
 }
 
 TEST_F(SurfaceFilesTest, BrokenTilesAreBugs) {
-  const MapFrame frame(SampleInfo(kToronto));
-  SurfaceFiles files(frame, {}, kSampleTile_m, folder_.path());
+  SurfaceFiles files(frame_, {}, kSampleTile_m, folder_.path());
   TexturedTile tile = SampleTile({0, 0, 0});
   tile.triangle.push_back({0, 1, 9999});
   EXPECT_THROW(files.Add(tile), std::logic_error);

@@ -62,11 +62,10 @@ TEST_F(HttpTest, NothingWithoutAValidCookie) {
 }
 
 TEST_F(HttpTest, GuessingTokensIsStopped) {
-  const std::string cookie = Login();
   for (int i = 0; i < 20; ++i) EXPECT_EQ(Status(Ask("GET /?token=" + std::to_string(i), "")), 403);
   EXPECT_EQ(Status(Ask("GET /?token=1", "")), 429);
-  EXPECT_EQ(Status(Ask("GET /?token=x", cookie)), 303) << "an old link";
-  EXPECT_EQ(Status(Ask("GET /", cookie)), 200);
+  EXPECT_EQ(Status(Ask("GET /?token=x", cookie_)), 303) << "an old link";
+  EXPECT_EQ(Status(Ask("GET /", cookie_)), 200);
   EXPECT_EQ(Status(Ask("GET " + LinkTarget(), "")), 303) << "strangers must not lock out whoever has the link";
 }
 
@@ -94,10 +93,9 @@ TEST_F(HttpTest, ForeignHostsAreRefusedFirst) {
 }
 
 TEST_F(HttpTest, EveryAnswerHasTheSecurityHeaders) {
-  const std::string cookie = Login();
-  for (const auto& reply : {Ask("GET /", cookie), Ask("GET /", ""), Ask("GET /data/text", cookie), Ask("GET /data/nothing", cookie),
-                            Ask("DELETE /", cookie), AskRaw("nonsense\r\n\r\n"), AskRaw("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"),
-                            AskRaw(UpgradeRequest(cookie, origin_), true), Ask("GET /?token=x", "")}) {
+  for (const auto& reply : {Ask("GET /", cookie_), Ask("GET /", ""), Ask("GET /data/text", cookie_), Ask("GET /data/nothing", cookie_),
+                            Ask("DELETE /", cookie_), AskRaw("nonsense\r\n\r\n"), AskRaw("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"),
+                            AskRaw(UpgradeRequest(cookie_, origin_), true), Ask("GET /?token=x", "")}) {
     ASSERT_TRUE(reply);
     const std::string policy = reply->headers.count("content-security-policy") != 0 ? reply->headers.at("content-security-policy") : "";
     EXPECT_TRUE(policy.starts_with("default-src 'self'; ")) << reply->status;
@@ -110,13 +108,12 @@ TEST_F(HttpTest, EveryAnswerHasTheSecurityHeaders) {
     EXPECT_EQ(reply->headers.at("cross-origin-resource-policy"), "same-origin");
     EXPECT_EQ(reply->headers.count("access-control-allow-origin"), 0U);
   }
-  EXPECT_NE(Ask("GET /", cookie)->headers.at("content-security-policy").find("connect-src 'self' blob: ws://" + host_ + ";"), std::string::npos);
-  EXPECT_EQ(Ask("GET /data/text", cookie)->headers.at("cache-control"), "no-store");
-  EXPECT_EQ(Ask("GET /data/cached", cookie)->headers.at("cache-control"), "private, max-age=3600");
+  EXPECT_NE(Ask("GET /", cookie_)->headers.at("content-security-policy").find("connect-src 'self' blob: ws://" + host_ + ";"), std::string::npos);
+  EXPECT_EQ(Ask("GET /data/text", cookie_)->headers.at("cache-control"), "no-store");
+  EXPECT_EQ(Ask("GET /data/cached", cookie_)->headers.at("cache-control"), "private, max-age=3600");
 }
 
 TEST_F(HttpTest, PathsThatLeaveTheFixedNamesReachNothing) {
-  const std::string cookie = Login();
   for (const std::string path : {"/data/../text",
                                  "/data/%2e%2e/text",
                                  "/data/..%2ftext",
@@ -138,35 +135,33 @@ TEST_F(HttpTest, PathsThatLeaveTheFixedNamesReachNothing) {
                                  "//etc/passwd",
                                  "/data/....//text",
                                  "/data/file:///etc/passwd"}) {
-    EXPECT_EQ(Status(Ask("GET " + path, cookie)), 400) << path;
-    EXPECT_EQ(Status(Ask("PUT " + path, cookie, "Origin: " + origin_ + "\r\n", "x")), 400) << path;
+    EXPECT_EQ(Status(Ask("GET " + path, cookie_)), 400) << path;
+    EXPECT_EQ(Status(Ask("PUT " + path, cookie_, "Origin: " + origin_ + "\r\n", "x")), 400) << path;
   }
   for (const std::string path : {"/etc/passwd", "/data", "/data/", "/index.html", "/app.js/", "/Data/text"}) {
-    EXPECT_EQ(Status(Ask("GET " + path, cookie)), 404) << path;
+    EXPECT_EQ(Status(Ask("GET " + path, cookie_)), 404) << path;
   }
   EXPECT_TRUE(data_.asked.empty());
   EXPECT_TRUE(data_.saved.empty());
 }
 
 TEST_F(HttpTest, DataIsAskedWithPathAndQuery) {
-  const std::string cookie = Login();
-  const auto reply = Ask("GET /data/text?a=%20", cookie);
+  const auto reply = Ask("GET /data/text?a=%20", cookie_);
   EXPECT_EQ(Status(reply), 200);
   EXPECT_EQ(reply->body, "hello");
   EXPECT_EQ(reply->headers.at("content-type"), "text/plain");
   EXPECT_EQ(data_.asked, std::vector<std::string>({"text?a=%20"}));
-  EXPECT_EQ(Status(Ask("GET /data/" + std::string(201, 'a'), cookie)), 404);
-  EXPECT_EQ(Status(Ask("GET /data/text?" + std::string(101, 'a'), cookie)), 414);
+  EXPECT_EQ(Status(Ask("GET /data/" + std::string(201, 'a'), cookie_)), 404);
+  EXPECT_EQ(Status(Ask("GET /data/text?" + std::string(101, 'a'), cookie_)), 414);
   EXPECT_EQ(data_.asked.size(), 1U);
 }
 
 TEST_F(HttpTest, SourceThatThrowsIsAnErrorWithoutItsReason) {
-  const std::string cookie = Login();
-  const auto reply = Ask("GET /data/throws", cookie);
+  const auto reply = Ask("GET /data/throws", cookie_);
   EXPECT_EQ(Status(reply), 500);
   EXPECT_EQ(reply->body.find("secret"), std::string::npos);
-  EXPECT_EQ(Status(Ask("GET /data/text", cookie)), 200);
-  const auto split = Ask("GET /data/split", cookie);
+  EXPECT_EQ(Status(Ask("GET /data/text", cookie_)), 200);
+  const auto split = Ask("GET /data/split", cookie_);
   EXPECT_EQ(Status(split), 200);
   EXPECT_EQ(split->headers.count("set-cookie"), 0U);
 }
@@ -185,14 +180,13 @@ TEST_F(HttpTest, MethodsThatAreNotAllowed) {
 }
 
 TEST_F(HttpTest, PutOnlyFromTheOwnPage) {
-  const std::string cookie = Login();
   for (const std::string& origin : {std::string(), std::string("Origin: null\r\n"), std::string("Origin: http://evil.example\r\n"),
                                     "Origin: https://" + host_ + "\r\n", "Origin: http://localhost:" + std::to_string(server_->port()) + "\r\n",
                                     "Origin: " + origin_ + ".evil.example\r\n", "Origin: " + origin_ + "\r\nOrigin: http://evil.example\r\n"}) {
-    EXPECT_EQ(Status(Ask("PUT /data/gcp.json", cookie, origin, "{}")), 403) << origin;
+    EXPECT_EQ(Status(Ask("PUT /data/gcp.json", cookie_, origin, "{}")), 403) << origin;
   }
   EXPECT_TRUE(data_.saved.empty());
-  EXPECT_EQ(Status(Ask("PUT /data/gcp.json", cookie, "Origin: " + origin_ + "\r\n", "{}")), 204);
+  EXPECT_EQ(Status(Ask("PUT /data/gcp.json", cookie_, "Origin: " + origin_ + "\r\n", "{}")), 204);
   EXPECT_EQ(data_.saved["gcp.json"], "{}");
 }
 
@@ -238,9 +232,8 @@ TEST_F(HttpTest, PutOfAMegabyteAndMore) {
 }
 
 TEST_F(HttpTest, ExpectContinueIsAnswered) {
-  const std::string cookie = Login();
   RawClient client(server_->port());
-  client.Send(Request("PUT /data/x", cookie, "Origin: " + origin_ + "\r\nExpect: 100-continue\r\nContent-Length: 3\r\n"));
+  client.Send(Request("PUT /data/x", cookie_, "Origin: " + origin_ + "\r\nExpect: 100-continue\r\nContent-Length: 3\r\n"));
   EXPECT_EQ(Status(client.ReadReply()), 100);
   client.Send("abc");
   EXPECT_EQ(Status(client.ReadReply()), 204);
@@ -248,14 +241,13 @@ TEST_F(HttpTest, ExpectContinueIsAnswered) {
 }
 
 TEST_F(HttpTest, KeepAliveHeadAndPipelinedRequests) {
-  const std::string cookie = Login();
   RawClient client(server_->port());
-  client.Send(Request("HEAD /data/text", cookie));
+  client.Send(Request("HEAD /data/text", cookie_));
   const auto head = client.ReadReply(true);
   ASSERT_EQ(Status(head), 200);
   EXPECT_EQ(head->headers.at("content-length"), "5");
   EXPECT_EQ(head->headers.at("connection"), "keep-alive");
-  client.Send(Request("GET /data/text", cookie) + Request("GET /app.js", cookie) + Request("GET /", cookie, "Connection: close\r\n"));
+  client.Send(Request("GET /data/text", cookie_) + Request("GET /app.js", cookie_) + Request("GET /", cookie_, "Connection: close\r\n"));
   EXPECT_EQ(client.ReadReply()->body, "hello");
   EXPECT_EQ(client.ReadReply()->body, "let a = 1;");
   EXPECT_EQ(client.ReadReply()->headers.at("connection"), "close");
@@ -263,25 +255,24 @@ TEST_F(HttpTest, KeepAliveHeadAndPipelinedRequests) {
 }
 
 TEST_F(HttpTest, FilesAreSentWholeAndMissingOnesAreNotFound) {
-  const std::string cookie = Login();
   data_.file = std::filesystem::path(::testing::TempDir()) / "skyquilt_server_test.glb";
   std::string content(3U << 20U, '\0');
   for (size_t i = 0; i < content.size(); ++i) content[i] = static_cast<char>(i * 2654435761U >> 13U);
   std::ofstream(data_.file, std::ios::binary) << content;
   RawClient client(server_->port());
-  client.Send(Request("GET /data/file", cookie));
+  client.Send(Request("GET /data/file", cookie_));
   const auto reply = client.ReadReply();
   ASSERT_EQ(Status(reply), 200);
   EXPECT_TRUE(reply->body == content);
-  client.Send(Request("HEAD /data/file", cookie));
+  client.Send(Request("HEAD /data/file", cookie_));
   EXPECT_EQ(client.ReadReply(true)->headers.at("content-length"), std::to_string(content.size()));
   std::ofstream(data_.file, std::ios::binary | std::ios::trunc).close();
-  client.Send(Request("GET /data/file", cookie));
+  client.Send(Request("GET /data/file", cookie_));
   EXPECT_EQ(client.ReadReply()->headers.at("content-length"), "0");
   std::filesystem::remove(data_.file);
-  client.Send(Request("GET /data/file", cookie));
+  client.Send(Request("GET /data/file", cookie_));
   EXPECT_EQ(Status(client.ReadReply()), 404);
-  client.Send(Request("GET /data/folder", cookie));
+  client.Send(Request("GET /data/folder", cookie_));
   EXPECT_EQ(Status(client.ReadReply()), 404);
 }
 

@@ -92,7 +92,7 @@ class RecordingData : public DataSource {
 class ServerTest : public ::testing::Test {
  protected:
   void SetUp() override { Start({}); }
-  // A server with these options instead.
+  // A server with these options instead, and a login where all may look.
   void Start(ServerOptions options) {
     server_.reset();
     options.assets = {{"/", "text/html; charset=utf-8", "<p>front end</p>"}, {"/app.js", "text/javascript; charset=utf-8", "let a = 1;"}};
@@ -100,6 +100,7 @@ class ServerTest : public ::testing::Test {
     handler_.server = server_.get();
     host_ = "127.0.0.1:" + std::to_string(server_->port());
     origin_ = "http://" + host_;
+    if (options.rights == ServerOptions().rights) cookie_ = Login();
   }
   void TearDown() override { server_.reset(); }
 
@@ -171,7 +172,7 @@ class ServerTest : public ::testing::Test {
   RecordingHandler handler_;
   RecordingData data_;
   std::unique_ptr<Server> server_;
-  std::string host_, origin_;
+  std::string host_, origin_, cookie_;
 };
 
 }  // namespace skyquilt::viewer

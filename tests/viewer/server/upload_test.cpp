@@ -20,7 +20,6 @@ class UploadTest : public ServerTest {
     return Request("PUT /data/tour/assets/" + name, cookie_,
                    "Origin: " + origin_ + "\r\n" + extra + "Content-Length: " + std::to_string(bytes) + "\r\n");
   }
-  std::string cookie_;
 };
 
 TEST_F(UploadTest, FiftyMebibytesArriveWholeAndNoByteMore) {

@@ -207,7 +207,7 @@ std::string Item(const std::filesystem::path& file, const char* key) {
 }
 
 TEST_F(MapProductsTest, SayHowAccurateTheirPlaceIs) {
-  scene_::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
+  scene::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   info.accuracy = {.scale_percent = 0.412345, .tilt_deg = 0.3, .yaw_deg = 0.25, .horizontal_m = 1.53};
   const MapProducts products = MakeMapProducts(info, scene_.Caster(), ProductOptions{}, folder_.path());
   for (const std::filesystem::path& file : {products.orthophoto, products.dsm}) {
@@ -232,7 +232,7 @@ TEST_F(MapProductsTest, SayHowAccurateTheirPlaceIs) {
 
 // A level scene 100 m above the ellipsoid, where the geoid is 48.411 m above it.
 TEST_F(MapProductsTest, ConvertHeights) {
-  scene_::SceneInfo info = scene_.Info({52.0, -1.5, 100.0 - scene_.ground_z}, true);
+  scene::SceneInfo info = scene_.Info({52.0, -1.5, 100.0 - scene_.ground_z}, true);
   ProductOptions options;
   options.ortho = false;
   const auto ground = [&](const std::string& vertical) {
@@ -362,7 +362,7 @@ TEST_F(MapProductsTest, PreviewsLieInTheLocalFrame) {
 }
 
 TEST_F(MapProductsTest, TooManyCellsAreRefusedOrCoarsened) {
-  const scene_::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
+  const scene::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   ProductOptions options;
   options.max_pixels = 20000;
   const gis::MapGrid coarse = PlanMapGrid(info, options);
@@ -378,7 +378,7 @@ TEST_F(MapProductsTest, TooManyCellsAreRefusedOrCoarsened) {
 }
 
 TEST_F(MapProductsTest, RaysStayInTheBoxesAboveTheirCell) {
-  scene_::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
+  scene::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   info.blocks[0].max_enu.z() = 8.0;
   const gis::MapGrid grid = PlanMapGrid(info, ProductOptions{});
   const MapRayGenerator maker(info, grid);
@@ -395,7 +395,7 @@ TEST_F(MapProductsTest, RaysStayInTheBoxesAboveTheirCell) {
 
 TEST_F(MapProductsTest, RaysAreColumnsAsWideAsTheirCell) {
   for (const bool georeferenced : {true, false}) {
-    const scene_::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, georeferenced);
+    const scene::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, georeferenced);
     ProductOptions options;
     options.resolution_m = 0.75;
     const gis::MapGrid grid = PlanMapGrid(info, options);

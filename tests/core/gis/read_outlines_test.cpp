@@ -12,6 +12,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/gis/vector_layers.h"
+#include "tests/core/gis/made_rings.h"
 #include "tests/support/error_of.h"
 #include "tests/support/in_temporary_folder.h"
 
@@ -20,29 +21,10 @@ namespace {
 
 using ReadOutlinesTest = InTemporaryFolder;
 
-using Ring = std::vector<Eigen::Vector2d>;
-using Rings = std::vector<Ring>;
-const geo::UtmZone kPlace = {31, true};
-
 // The outer ring clockwise and the hole counter-clockwise, against the contract of the result.
 const Rings kHouse = {{{430000, 4580000}, {430000, 4580080}, {430100, 4580080}, {430100, 4580000}},
                       {{430040, 4580030}, {430060, 4580030}, {430060, 4580050}, {430040, 4580050}}};
 const Rings kShed = {{{430200, 4580000}, {430210, 4580000}, {430210, 4580010}}};
-
-std::string InDegrees(const Rings& rings) {
-  std::string text;
-  for (const Ring& ring : rings) {
-    text += text.empty() ? "[" : ",[";
-    for (size_t i = 0; i <= ring.size(); ++i) {
-      const geo::Geodetic place = geo::GeodeticFromUtm(ring[i % ring.size()], 0.0, kPlace);
-      char point[80];
-      std::snprintf(point, sizeof(point), "%s[%.12f,%.12f,7.5]", i == 0 ? "" : ",", place.longitude_deg, place.latitude_deg);
-      text += point;
-    }
-    text += "]";
-  }
-  return "[" + text + "]";
-}
 
 // head: members of the feature before its properties, for instance "\"id\":7,".
 std::string OneFeature(const std::string& head, const std::string& properties, const std::string& type, const std::string& coordinates) {
@@ -115,12 +97,12 @@ VectorLayer LayerOf(const Rings& rings, std::vector<LayerField> fields, std::vec
 }
 
 TEST_F(ReadOutlinesTest, AllFormatsAgree) {
-  base::WriteFileAtomically(folder_ / "houses.geojson", Features(OneFeature("", R"("id":"H7")", "Polygon", InDegrees(kHouse))));
+  base::WriteFileAtomically(folder_ / "houses.geojson", Features(OneFeature("", R"("id":"H7")", "Polygon", InDegrees(kHouse, ",7.5"))));
   WriteShapefile(folder_ / "houses.shp", kHouse, 32631, "ID", "H7");
   const VectorLayer layer = LayerOf(kHouse, {{"id", FieldType::kText}}, {std::string("H7")});
-  WriteVectorLayers(std::span(&layer, 1), true, kPlace, folder_ / "houses.gpkg");
+  WriteVectorLayers(std::span(&layer, 1), true, kMade31N, folder_ / "houses.gpkg");
   for (const char* name : {"houses.geojson", "houses.shp", "houses.gpkg"}) {
-    const std::vector<Outline> outlines = ReadOutlines(folder_ / name, true, kPlace);
+    const std::vector<Outline> outlines = ReadOutlines(folder_ / name, true, kMade31N);
     ASSERT_EQ(outlines.size(), 1U) << name;
     ExpectHouse(outlines[0]);
     EXPECT_EQ(outlines[0].id, "H7") << name;
@@ -133,9 +115,9 @@ TEST_F(ReadOutlinesTest, AllFormatsAgree) {
 TEST_F(ReadOutlinesTest, MultipolygonsAreSplitAndKeepTheirId) {
   base::WriteFileAtomically(folder_ / "a.json",
                             Features(OneFeature("", R"("a":1)", "Point", "[2.1,41.3]") + "," +
-                                     OneFeature("", R"("name":"two")", "MultiPolygon", "[" + InDegrees(kHouse) + "," + InDegrees(kShed) + "]") + "," +
-                                     OneFeature("", R"("name":null)", "Polygon", InDegrees(kShed))));
-  const std::vector<Outline> outlines = ReadOutlines(folder_ / "a.json", true, kPlace);
+                                     OneFeature("", R"("name":"two")", "MultiPolygon", "[" + InDegrees(kHouse, ",7.5") + "," + InDegrees(kShed, ",7.5") + "]") + "," +
+                                     OneFeature("", R"("name":null)", "Polygon", InDegrees(kShed, ",7.5"))));
+  const std::vector<Outline> outlines = ReadOutlines(folder_ / "a.json", true, kMade31N);
   EXPECT_EQ(IdsOf(outlines), (std::vector<std::string>{"two", "two", ""}));
   ExpectHouse(outlines[0]);
   EXPECT_EQ(outlines[1].rings.size(), 1U);
@@ -145,9 +127,9 @@ TEST_F(ReadOutlinesTest, MultipolygonsAreSplitAndKeepTheirId) {
 TEST_F(ReadOutlinesTest, FindTheIdentity) {
   const auto ids = [&](const std::string& features) {
     base::WriteFileAtomically(folder_ / "a.geojson", Features(features));
-    return IdsOf(ReadOutlines(folder_ / "a.geojson", true, kPlace));
+    return IdsOf(ReadOutlines(folder_ / "a.geojson", true, kMade31N));
   };
-  const std::string shed = InDegrees(kShed);
+  const std::string shed = InDegrees(kShed, ",7.5");
   const auto feature = [&](const std::string& head, const std::string& properties) { return OneFeature(head, properties, "Polygon", shed); };
   EXPECT_EQ(ids(feature("", R"("name":"n","osm_id":12345678901,"fid":3,"id":4)")), std::vector<std::string>{"4"});
   EXPECT_EQ(ids(feature("", R"("name":"n","osm_id":12345678901)")), std::vector<std::string>{"12345678901"});
@@ -157,22 +139,22 @@ TEST_F(ReadOutlinesTest, FindTheIdentity) {
   EXPECT_EQ(ids(feature(R"("id":17,)", "") + "," + feature(R"("id":4,)", "")), (std::vector<std::string>{"17", "4"}));
   EXPECT_EQ(ids(feature("", R"("height":3)")), std::vector<std::string>{""});
   const VectorLayer layer = LayerOf(kShed, {{"name", FieldType::kText}}, {std::monostate()});
-  WriteVectorLayers(std::span(&layer, 1), true, kPlace, folder_ / "a.gpkg");
-  EXPECT_EQ(IdsOf(ReadOutlines(folder_ / "a.gpkg", true, kPlace)), std::vector<std::string>{"1"}) << "GeoPackage numbers its rows";
+  WriteVectorLayers(std::span(&layer, 1), true, kMade31N, folder_ / "a.gpkg");
+  EXPECT_EQ(IdsOf(ReadOutlines(folder_ / "a.gpkg", true, kMade31N)), std::vector<std::string>{"1"}) << "GeoPackage numbers its rows";
 }
 
 TEST_F(ReadOutlinesTest, TextsOfUnknownEncodingBecomeClean) {
   WriteShapefile(folder_ / "houses.shp", kShed, 32631, "name", "Caf\xE9");
   std::filesystem::remove(folder_ / "houses.cpg");
-  const std::string id = ReadOutlines(folder_ / "houses.shp", true, kPlace)[0].id;
+  const std::string id = ReadOutlines(folder_ / "houses.shp", true, kMade31N)[0].id;
   EXPECT_TRUE(id.starts_with("Caf")) << id;
   EXPECT_EQ(id.find('\xE9'), std::string::npos) << "a byte that is no UTF-8";
 }
 
 TEST_F(ReadOutlinesTest, RepairsPolygonsThatCrossThemselves) {
   const Rings bow = {{{430000, 4580000}, {430010, 4580010}, {430010, 4580000}, {430000, 4580010}}};
-  base::WriteFileAtomically(folder_ / "a.geojson", Features(OneFeature("", R"("id":"bow")", "Polygon", InDegrees(bow))));
-  const std::vector<Outline> outlines = ReadOutlines(folder_ / "a.geojson", true, kPlace);
+  base::WriteFileAtomically(folder_ / "a.geojson", Features(OneFeature("", R"("id":"bow")", "Polygon", InDegrees(bow, ",7.5"))));
+  const std::vector<Outline> outlines = ReadOutlines(folder_ / "a.geojson", true, kMade31N);
   EXPECT_EQ(IdsOf(outlines), (std::vector<std::string>{"bow", "bow"}));
   for (const Outline& outline : outlines) {
     EXPECT_EQ(outline.rings[0].size(), 3U);
@@ -189,7 +171,7 @@ TEST_F(ReadOutlinesTest, LocalMetresAreTakenAsTheyAre) {
 }
 
 TEST_F(ReadOutlinesTest, SaysWhatIsWrong) {
-  const auto error_of = [&](const std::string& name) { return InputErrorOf([&] { ReadOutlines(folder_ / name, true, kPlace); }); };
+  const auto error_of = [&](const std::string& name) { return InputErrorOf([&] { ReadOutlines(folder_ / name, true, kMade31N); }); };
   EXPECT_NE(error_of("none.shp").find("none.shp: does not exist"), std::string::npos);
   base::WriteFileAtomically(folder_ / "text.geojson", "hello");
   EXPECT_NE(error_of("text.geojson").find("cannot be read as GeoJSON, GeoPackage or Shapefile"), std::string::npos);
@@ -217,8 +199,8 @@ TEST_F(ReadOutlinesTest, GiveBackWhatWasWritten) {
     }
     layer.features.push_back(LayerOf({star}, {}, {id}).features[0]);
   }
-  WriteVectorLayers(std::span(&layer, 1), true, kPlace, folder_ / "stars.gpkg");
-  const std::vector<Outline> outlines = ReadOutlines(folder_ / "stars.gpkg", true, kPlace);
+  WriteVectorLayers(std::span(&layer, 1), true, kMade31N, folder_ / "stars.gpkg");
+  const std::vector<Outline> outlines = ReadOutlines(folder_ / "stars.gpkg", true, kMade31N);
   ASSERT_EQ(outlines.size(), stars.size() + 1);
   for (size_t k = 0; k < stars.size(); ++k) {
     const Outline& found = outlines[k + 1];

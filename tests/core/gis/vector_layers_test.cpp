@@ -10,9 +10,9 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "tests/core/gis/limited_file_size.h"
 #include "tests/support/error_of.h"
 #include "tests/support/in_temporary_folder.h"
+#include "tests/support/limited_file_size.h"
 
 namespace skyquilt::gis {
 namespace {

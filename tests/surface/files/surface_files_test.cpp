@@ -1,15 +1,14 @@
 #include "surface/files/surface_files.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <fstream>
 
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "surface/files/file_writer.h"
 #include "tests/support/error_of.h"
+#include "tests/support/limited_file_size.h"
 #include "tests/surface/files/sample_surface.h"
 
 namespace skyquilt::surface {
@@ -149,21 +148,13 @@ TEST_F(SurfaceFilesTest, AFolderThatCannotBeWrittenIsNamed) {
   EXPECT_NE(message.find("file"), std::string::npos) << message;
 }
 
-// A limit on the size of files stands for a full disk: the system refuses to write in the same way.
 TEST_F(SurfaceFilesTest, AFullDiskNamesTheFileAndLeavesNothing) {
-  rlimit before = {};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  std::string message;
-  {
+  const std::string message = InputErrorOf([&] {
     SurfaceFiles files(frame_, {.glb = true, .obj = false, .ply = false, .cloud = false, .tiles = false}, kSampleTile_m, folder_.path());
     files.Add(SampleTile({0, 0, 0}));
-    const rlimit small = {1000, before.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
-    message = InputErrorOf([&] { files.Close(); });
-    setrlimit(RLIMIT_FSIZE, &before);
-  }
-  std::signal(SIGXFSZ, old_handler);
+    const LimitedFileSize limit(1000);
+    files.Close();
+  });
   EXPECT_NE(message.find("mesh.glb"), std::string::npos) << message;
   EXPECT_EQ(NamesIn(folder_.path()), Names{});
 }

@@ -12,8 +12,8 @@
 #include "core/base/json_text.h"
 #include "core/image/image.h"
 #include "core/image/srgb.h"
-#include "tests/core/gis/limited_file_size.h"
 #include "tests/support/error_of.h"
+#include "tests/support/limited_file_size.h"
 #include "tests/tour/export/sample_tour_project.h"
 #include "tour/export/tour_video.h"
 

@@ -1,6 +1,5 @@
 // Saving a tour and the files of its models and pictures.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,6 +7,7 @@
 #include <csignal>
 
 #include "core/base/json_text.h"
+#include "tests/support/limited_file_size.h"
 #include "tests/tour/format/sample_assets.h"
 #include "tests/tour/format/sample_tour.h"
 #include "tests/viewer/data/sample_project.h"
@@ -196,16 +196,10 @@ TEST_F(TourAssets, AFullDiskLeavesNothingHalf) {
   ASSERT_EQ(data_.Put("tour.json", base::JsonText(tour::SampleTour()), "").status, 204);
   const std::string tour_before = base::ReadFile(sample_.project.folder / "tour.json");
   ASSERT_EQ(data_.Put(PathOf(small, "png"), small, "").status, 204);
-  // A limit on the file size makes writes fail like a full disk.
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  rlimit low = before;
-  low.rlim_cur = 1000;
-  setrlimit(RLIMIT_FSIZE, &low);
+  auto limit = std::make_optional<LimitedFileSize>(rlim_t{1000});
   const DataReply asset = data_.Put(PathOf(large, "glb"), large, "");
   const DataReply document = data_.Put("tour.json", tour::SampleTourWith([](nlohmann::json& json) { json["title"] = "new"; }), "");
-  setrlimit(RLIMIT_FSIZE, &before);
+  limit.reset();
   EXPECT_EQ(asset.status, 507) << asset.body;
   EXPECT_NE(asset.body.find("Free some space"), std::string::npos);
   EXPECT_EQ(document.status, 507) << document.body;

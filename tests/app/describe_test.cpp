@@ -9,11 +9,14 @@
 #include "core/scene/scene_file.h"
 #include "partition/block.h"
 #include "tests/support/call_program.h"
+#include "tests/support/in_temporary_folder.h"
 #include "tests/support/nadir_photo.h"
-#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::app {
 namespace {
+
+using DescribeArchiveTest = InTemporaryFolder;
+using DescribeProject = InTemporaryFolder;
 
 survey::Survey LaggingSurvey() {
   survey::Survey survey;
@@ -86,14 +89,13 @@ TEST(DescribeSurvey, ShowsAccuracyLagAndProblems) {
   EXPECT_EQ(json.at("gravity")[0].at("weight"), 0.9);
 }
 
-TEST(DescribeProject, ShowsHowWellItsSurveyIsPlaced) {
-  const TemporaryFolder folder;
-  survey::SaveSurvey(LaggingSurvey(), folder / "survey");
-  const nlohmann::ordered_json json = Describe(folder.path());
+TEST_F(DescribeProject, ShowsHowWellItsSurveyIsPlaced) {
+  survey::SaveSurvey(LaggingSurvey(), folder_ / "survey");
+  const nlohmann::ordered_json json = Describe(folder_.path());
   EXPECT_EQ(json.at("what"), "project");
   ExpectPlace(json.at("survey"));
 
-  const Called text = CallProgram({"info", folder.path().string()});
+  const Called text = CallProgram({"info", folder_.path().string()});
   EXPECT_EQ(text.status, 0);
   EXPECT_NE(text.out.find("    horizontal_m: 1.53\n    vertical_m: -\n"), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("    tag_lag_s: 1.235\n"), std::string::npos) << text.out;
@@ -101,11 +103,10 @@ TEST(DescribeProject, ShowsHowWellItsSurveyIsPlaced) {
   EXPECT_NE(text.out.find("\n      advice: look at the tags"), std::string::npos) << text.out;
 }
 
-TEST(DescribeProject, ShowsItsStagesWhenTheSurveyCannotBeRead) {
-  const TemporaryFolder folder;
-  survey::SaveSurvey(LaggingSurvey(), folder / "survey");
-  base::WriteFileAtomically(folder / "survey/survey.json", R"({"format": "skyquilt survey", "version": 1})");
-  const nlohmann::ordered_json json = Describe(folder.path());
+TEST_F(DescribeProject, ShowsItsStagesWhenTheSurveyCannotBeRead) {
+  survey::SaveSurvey(LaggingSurvey(), folder_ / "survey");
+  base::WriteFileAtomically(folder_ / "survey/survey.json", R"({"format": "skyquilt survey", "version": 1})");
+  const nlohmann::ordered_json json = Describe(folder_.path());
   EXPECT_FALSE(json.at("stages").empty());
   EXPECT_NE(json.at("survey").at("unreadable").get<std::string>().find("skyquilt prepare"), std::string::npos) << json;
 }
@@ -118,22 +119,21 @@ std::string StateOfProducts(const nlohmann::ordered_json& project) {
   return "";
 }
 
-TEST(DescribeProject, ShowsThePreviewUntilThereIsTheOrthophoto) {
-  const TemporaryFolder folder;
-  survey::SaveSurvey(LaggingSurvey(), folder / "survey");
-  EXPECT_FALSE(Describe(folder.path()).contains("previews"));
-  std::filesystem::create_directories(folder / "products");
-  for (const char* name : {"preview_ortho.tif", "preview_ortho.png"}) base::WriteFileAtomically(folder / "products" / name, "x");
-  base::WriteFileAtomically(folder / "products/preview_ortho.json", R"({"preview": "sparse points"})");
-  for (const char* name : {"preview_context.tif", "preview_context.png"}) base::WriteFileAtomically(folder / "products" / name, "x");
-  base::WriteFileAtomically(folder / "products/preview_context.json", R"({"preview": "context"})");
-  nlohmann::ordered_json json = Describe(folder.path());
+TEST_F(DescribeProject, ShowsThePreviewUntilThereIsTheOrthophoto) {
+  survey::SaveSurvey(LaggingSurvey(), folder_ / "survey");
+  EXPECT_FALSE(Describe(folder_.path()).contains("previews"));
+  std::filesystem::create_directories(folder_ / "products");
+  for (const char* name : {"preview_ortho.tif", "preview_ortho.png"}) base::WriteFileAtomically(folder_ / "products" / name, "x");
+  base::WriteFileAtomically(folder_ / "products/preview_ortho.json", R"({"preview": "sparse points"})");
+  for (const char* name : {"preview_context.tif", "preview_context.png"}) base::WriteFileAtomically(folder_ / "products" / name, "x");
+  base::WriteFileAtomically(folder_ / "products/preview_context.json", R"({"preview": "context"})");
+  nlohmann::ordered_json json = Describe(folder_.path());
   EXPECT_EQ(json.at("previews").at(0).at("made_from"), "sparse points");
   EXPECT_NE(json.at("previews").at(0).at("picture").get<std::string>().find("products/preview_ortho.png"), std::string::npos);
   EXPECT_EQ(json.at("previews").at(1).at("made_from"), "context");
   EXPECT_EQ(StateOfProducts(json), "not started");
-  base::WriteFileAtomically(folder / "products/orthophoto.tif", "x");
-  json = Describe(folder.path());
+  base::WriteFileAtomically(folder_ / "products/orthophoto.tif", "x");
+  json = Describe(folder_.path());
   EXPECT_FALSE(json.contains("previews"));
   EXPECT_NE(json.at("orthophoto").get<std::string>().find("products/orthophoto.tif"), std::string::npos);
 }
@@ -148,17 +148,16 @@ TEST(DescribeBlocks, ShowsTheAccuracy) {
   EXPECT_TRUE(json.at("accuracy").at("yaw_deg").is_null());
 }
 
-TEST(DescribeArchive, ShowsTheAccuracyOfScenesOnly) {
-  const TemporaryFolder folder;
+TEST_F(DescribeArchiveTest, ShowsTheAccuracyOfScenesOnly) {
   checkpoint::ArchiveWriter scene(scene::kSceneKind, scene::kSceneVersion);
   scene::PutAccuracy({.horizontal_m = 1.5}, scene);
   scene.SetAttribute("blocks", 0);
-  scene.Commit(folder / "scene.h5");
-  const nlohmann::ordered_json json = Describe(folder / "scene.h5");
+  scene.Commit(folder_ / "scene.h5");
+  const nlohmann::ordered_json json = Describe(folder_ / "scene.h5");
   EXPECT_EQ(json.at("accuracy").at("horizontal_m"), 1.5);
   EXPECT_TRUE(json.at("accuracy").at("vertical_m").is_null());
-  checkpoint::ArchiveWriter("block", 1).Commit(folder / "block.h5");
-  EXPECT_FALSE(Describe(folder / "block.h5").contains("accuracy"));
+  checkpoint::ArchiveWriter("block", 1).Commit(folder_ / "block.h5");
+  EXPECT_FALSE(Describe(folder_ / "block.h5").contains("accuracy"));
 }
 
 // A scene of one block; multisample 0: of points.
@@ -173,34 +172,32 @@ void WriteSceneOf(int multisample, const std::filesystem::path& file) {
   scene.Commit(file);
 }
 
-TEST(DescribeArchive, ShowsTheScalesOfScenesOnly) {
-  const TemporaryFolder folder;
-  WriteSceneOf(0, folder / "points.h5");
-  const nlohmann::ordered_json points = Describe(folder / "points.h5").at("scales");
+TEST_F(DescribeArchiveTest, ShowsTheScalesOfScenesOnly) {
+  WriteSceneOf(0, folder_ / "points.h5");
+  const nlohmann::ordered_json points = Describe(folder_ / "points.h5").at("scales");
   EXPECT_NE(points.at("samples").get<std::string>().find("points"), std::string::npos);
   EXPECT_FALSE(points.contains("finest_m_per_pixel"));
-  WriteSceneOf(6, folder / "cones.h5");
-  const nlohmann::ordered_json cones = Describe(folder / "cones.h5").at("scales");
+  WriteSceneOf(6, folder_ / "cones.h5");
+  const nlohmann::ordered_json cones = Describe(folder_ / "cones.h5").at("scales");
   EXPECT_EQ(cones.at("samples"), "cones");
   EXPECT_EQ(cones.at("positions"), 6);
   EXPECT_EQ(cones.at("finest_m_per_pixel"), 0.0123);
   EXPECT_EQ(cones.at("coarsest_m_per_pixel"), 0.25);
-  checkpoint::ArchiveWriter("block", 1).Commit(folder / "block.h5");
-  EXPECT_FALSE(Describe(folder / "block.h5").contains("scales"));
+  checkpoint::ArchiveWriter("block", 1).Commit(folder_ / "block.h5");
+  EXPECT_FALSE(Describe(folder_ / "block.h5").contains("scales"));
 }
 
-TEST(DescribeProject, ShowsTheScalesOfItsScene) {
-  const TemporaryFolder folder;
-  survey::SaveSurvey(LaggingSurvey(), folder / "survey");
-  EXPECT_FALSE(Describe(folder.path()).contains("scales"));
-  const std::filesystem::path file = coordinator::Project{folder.path()}.SceneFile();
+TEST_F(DescribeProject, ShowsTheScalesOfItsScene) {
+  survey::SaveSurvey(LaggingSurvey(), folder_ / "survey");
+  EXPECT_FALSE(Describe(folder_.path()).contains("scales"));
+  const std::filesystem::path file = coordinator::Project{folder_.path()}.SceneFile();
   std::filesystem::create_directories(file.parent_path());
   WriteSceneOf(4, file);
-  EXPECT_EQ(Describe(folder.path()).at("scales").at("positions"), 4);
-  const Called text = CallProgram({"info", folder.path().string()});
+  EXPECT_EQ(Describe(folder_.path()).at("scales").at("positions"), 4);
+  const Called text = CallProgram({"info", folder_.path().string()});
   EXPECT_NE(text.out.find("  finest_m_per_pixel: 0.0123\n"), std::string::npos) << text.out;
   base::WriteFileAtomically(file, "not a scene");
-  const nlohmann::ordered_json damaged = Describe(folder.path());
+  const nlohmann::ordered_json damaged = Describe(folder_.path());
   EXPECT_NE(damaged.at("scales").at("unreadable").get<std::string>().find(file.filename().string()), std::string::npos) << damaged;
   EXPECT_FALSE(damaged.at("stages").empty());
 }

@@ -9,7 +9,6 @@
 #include <limits>
 #include <set>
 
-#include "app/commands/cli.h"
 #include "coordinator/project/settings.h"
 #include "core/base/file.h"
 #include "core/base/pattern.h"

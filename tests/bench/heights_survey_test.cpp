@@ -68,13 +68,10 @@ class HeightsSurvey : public testing::Test {
     return names;
   }
 
-  static std::unique_ptr<TemporaryFolder> root_;
-  static fs::path folder_, holdout_;
-  static survey::ColmapModel model_;
+  static inline std::unique_ptr<TemporaryFolder> root_;
+  static inline fs::path folder_, holdout_;
+  static inline survey::ColmapModel model_;
 };
-std::unique_ptr<TemporaryFolder> HeightsSurvey::root_;
-fs::path HeightsSurvey::folder_, HeightsSurvey::holdout_;
-survey::ColmapModel HeightsSurvey::model_;
 
 TEST_F(HeightsSurvey, WholeFlightsHaveEquallyManyPhotosAndViewsTheirNumber) {
   const auto names = NamesByHeight();

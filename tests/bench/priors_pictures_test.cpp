@@ -4,10 +4,12 @@
 #include "bench/study/scene_views.h"
 #include "core/base/file.h"
 #include "core/survey/surface_class.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::bench {
 namespace {
+
+using CropsOfPriorsTest = InTemporaryFolder;
 
 namespace fs = std::filesystem;
 
@@ -46,15 +48,14 @@ std::vector<std::string> Captions(const std::vector<CaptionedImage>& row) {
   return captions;
 }
 
-TEST(CropsOfPriors, ShowEachClassInThePhotoThatHasMostOfIt) {
-  const TemporaryFolder folder;
-  std::vector<PriorResults> results = {VariantWith(folder.path(), "none", 10, 3), VariantWith(folder.path(), "planar", 20, 3),
-                                       VariantWith(folder.path(), "all", 30, 3)};
-  SaveClasses(folder.path(), results[0], 0, survey::SurfaceClass::kRoof, 10);
-  SaveClasses(folder.path(), results[0], 1, survey::SurfaceClass::kTree, 40);
-  SaveClasses(folder.path(), results[0], 2, survey::SurfaceClass::kRoof, 60);
-  for (int view = 0; view < 3; ++view) Save(folder.path(), results[0], view, "true_normals", 200);
-  const std::vector<PriorCrops> crops = CropsOfPriors(results, folder.path());
+TEST_F(CropsOfPriorsTest, ShowEachClassInThePhotoThatHasMostOfIt) {
+  std::vector<PriorResults> results = {VariantWith(folder_.path(), "none", 10, 3), VariantWith(folder_.path(), "planar", 20, 3),
+                                       VariantWith(folder_.path(), "all", 30, 3)};
+  SaveClasses(folder_.path(), results[0], 0, survey::SurfaceClass::kRoof, 10);
+  SaveClasses(folder_.path(), results[0], 1, survey::SurfaceClass::kTree, 40);
+  SaveClasses(folder_.path(), results[0], 2, survey::SurfaceClass::kRoof, 60);
+  for (int view = 0; view < 3; ++view) Save(folder_.path(), results[0], view, "true_normals", 200);
+  const std::vector<PriorCrops> crops = CropsOfPriors(results, folder_.path());
   ASSERT_EQ(crops.size(), 2U) << "no photo shows a wall";
   EXPECT_EQ(crops[0].id, "roofs");
   EXPECT_EQ(crops[1].id, "trees");
@@ -69,10 +70,9 @@ TEST(CropsOfPriors, ShowEachClassInThePhotoThatHasMostOfIt) {
   EXPECT_EQ(crops[0].colors[0].image.height, 240);
 }
 
-TEST(CropsOfPriors, ShowTheMiddleOfARealSurvey) {
-  const TemporaryFolder folder;
-  std::vector<PriorResults> results = {VariantWith(folder.path(), "none", 10, 6), VariantWith(folder.path(), "planar", 20, 6)};
-  const std::vector<PriorCrops> crops = CropsOfPriors(results, folder.path());
+TEST_F(CropsOfPriorsTest, ShowTheMiddleOfARealSurvey) {
+  std::vector<PriorResults> results = {VariantWith(folder_.path(), "none", 10, 6), VariantWith(folder_.path(), "planar", 20, 6)};
+  const std::vector<PriorCrops> crops = CropsOfPriors(results, folder_.path());
   ASSERT_EQ(crops.size(), 3U);
   EXPECT_EQ(*crops[0].colors[0].image.At(0, 0), 101);
   EXPECT_EQ(*crops[1].colors[0].image.At(0, 0), 103);
@@ -81,13 +81,12 @@ TEST(CropsOfPriors, ShowTheMiddleOfARealSurvey) {
   EXPECT_EQ(Captions(crops[0].normals), (std::vector<std::string>{"photo", "none, surface", "planar, surface"}));
 }
 
-TEST(CropsOfPriors, AreNoneWithoutPictures) {
-  const TemporaryFolder folder;
-  EXPECT_TRUE(CropsOfPriors({}, folder.path()).empty());
+TEST_F(CropsOfPriorsTest, AreNoneWithoutPictures) {
+  EXPECT_TRUE(CropsOfPriors({}, folder_.path()).empty());
   PriorResults failed{.name = "none", .label = "none", .seeds = {{}}};
-  EXPECT_TRUE(CropsOfPriors({failed}, folder.path()).empty());
-  EXPECT_TRUE(WritePriorPictures({}, folder.path()).empty());
-  EXPECT_FALSE(fs::exists(folder.path() / "priors.png"));
+  EXPECT_TRUE(CropsOfPriors({failed}, folder_.path()).empty());
+  EXPECT_TRUE(WritePriorPictures({}, folder_.path()).empty());
+  EXPECT_FALSE(fs::exists(folder_.path() / "priors.png"));
 }
 
 TEST(WritePriorPictures, WritesTheSheetAndEveryPictureOfThePage) {

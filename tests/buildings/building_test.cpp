@@ -11,6 +11,7 @@
 
 #include "buildings/buildings_options.h"
 #include "core/base/errors.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -191,12 +192,8 @@ TEST(BuildingsOptions, ScaleBarIsTwoPlacesAndADistance) {
 TEST(BuildingsOptions, MessagesNameTheOption) {
   BuildingsOptions options;
   options.min_area_m2 = -1.0;
-  try {
-    options.Check();
-    FAIL();
-  } catch (const base::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("buildings.min_area_m2"), std::string::npos) << error.what();
-  }
+  const std::string error = UsageErrorOf([&] { options.Check(); });
+  EXPECT_NE(error.find("buildings.min_area_m2"), std::string::npos) << error;
 }
 
 }  // namespace

@@ -45,16 +45,21 @@ BuildingsInput InputOf(const MadePlace& place) {
   return input;
 }
 
-TEST(MakeBuildings, FindsTheHousesAndNoTrees) {
-  const MadePlace place = TwoHouses();
-  base::ThreadPool threads(2);
-  const BuildingSet set = MakeBuildings(InputOf(place), threads);
+class MakeBuildingsTest : public ::testing::Test {
+ protected:
+  MadePlace place_ = TwoHouses();
+  BuildingsInput input_ = InputOf(place_);
+  base::ThreadPool threads_{2};
+};
+
+TEST_F(MakeBuildingsTest, FindsTheHousesAndNoTrees) {
+  const BuildingSet set = MakeBuildings(input_, threads_);
   ASSERT_EQ(set.buildings.size(), 2U);
   EXPECT_TRUE(set.metric);
   EXPECT_EQ(set.scale_source, "geo-reference");
   for (size_t i = 0; i < 2; ++i) {
     const Building& found = set.buildings[i];
-    const Building& truth = place.truth[i];
+    const Building& truth = place_.truth[i];
     EXPECT_EQ(found.id, truth.id);  // from west to east
     EXPECT_EQ(found.roof, truth.roof);
     EXPECT_TRUE(found.accepted) << found.note;
@@ -67,10 +72,9 @@ TEST(MakeBuildings, FindsTheHousesAndNoTrees) {
   }
 }
 
-TEST(MakeBuildings, AreTheSameForAnyNumberOfThreads) {
-  const MadePlace place = TwoHouses();
+TEST_F(MakeBuildingsTest, AreTheSameForAnyNumberOfThreads) {
   base::ThreadPool one(1), three(3);
-  const BuildingSet a = MakeBuildings(InputOf(place), one), b = MakeBuildings(InputOf(place), three);
+  const BuildingSet a = MakeBuildings(input_, one), b = MakeBuildings(input_, three);
   ASSERT_EQ(a.buildings.size(), b.buildings.size());
   for (size_t i = 0; i < a.buildings.size(); ++i) {
     EXPECT_EQ(a.buildings[i].shape.u, b.buildings[i].shape.u);
@@ -78,15 +82,12 @@ TEST(MakeBuildings, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(MakeBuildings, WithoutScaleAreNotMetricAndAScaleBarGivesIt) {
-  const MadePlace place = TwoHouses();
-  base::ThreadPool threads(2);
-  BuildingsInput input = InputOf(place);
-  input.georeferenced = false;
-  const BuildingSet local = MakeBuildings(input, threads);
+TEST_F(MakeBuildingsTest, WithoutScaleAreNotMetricAndAScaleBarGivesIt) {
+  input_.georeferenced = false;
+  const BuildingSet local = MakeBuildings(input_, threads_);
   EXPECT_FALSE(local.metric);
-  input.options.scale_bar = {0, 0, 0, 3, 4, 0, 10};  // 5 units are 10 m
-  const BuildingSet scaled = MakeBuildings(input, threads);
+  input_.options.scale_bar = {0, 0, 0, 3, 4, 0, 10};  // 5 units are 10 m
+  const BuildingSet scaled = MakeBuildings(input_, threads_);
   EXPECT_TRUE(scaled.metric);
   EXPECT_EQ(scaled.scale, 2.0);
   ASSERT_EQ(scaled.buildings.size(), local.buildings.size());
@@ -95,14 +96,11 @@ TEST(MakeBuildings, WithoutScaleAreNotMetricAndAScaleBarGivesIt) {
   EXPECT_DOUBLE_EQ(m.footprint_m2.sigma, 4.0 * one.footprint_m2.sigma);
   EXPECT_DOUBLE_EQ(m.volume_m3.value, 8.0 * one.volume_m3.value);
   EXPECT_DOUBLE_EQ(m.yaw_deg.value, one.yaw_deg.value);
-  input.options.scale_bar = {1, 1, 1, 1, 1, 1, 2};
-  EXPECT_NE(UsageErrorOf([&] { MakeBuildings(input, threads); }).find("two points are the same"), std::string::npos);
+  input_.options.scale_bar = {1, 1, 1, 1, 1, 1, 2};
+  EXPECT_NE(UsageErrorOf([&] { MakeBuildings(input_, threads_); }).find("two points are the same"), std::string::npos);
 }
 
-TEST(MakeBuildings, OutlinesThatFitNothingGiveSoundBuildingsOrNone) {
-  const MadePlace place = TwoHouses();
-  base::ThreadPool threads(2);
-  BuildingsInput input = InputOf(place);
+TEST_F(MakeBuildingsTest, OutlinesThatFitNothingGiveSoundBuildingsOrNone) {
   // Outlines that fit nothing: across houses, trees and the ground between.
   for (int i = 0; i < 60; ++i) {
     const Eigen::Vector2d corner(12.0 + 4.7 * (i % 12), 22.0 + 4.3 * (i / 12));
@@ -110,9 +108,9 @@ TEST(MakeBuildings, OutlinesThatFitNothingGiveSoundBuildingsOrNone) {
     for (const Eigen::Vector2d& step : {Eigen::Vector2d(0, 0), Eigen::Vector2d(9, 0), Eigen::Vector2d(9, 7), Eigen::Vector2d(0, 7)}) {
       box.outer.push_back(corner + step);
     }
-    input.footprints.push_back({box, std::to_string(i)});
+    input_.footprints.push_back({box, std::to_string(i)});
   }
-  const BuildingSet set = MakeBuildings(input, threads);
+  const BuildingSet set = MakeBuildings(input_, threads_);
   EXPECT_GT(set.buildings.size(), 5U);
   EXPECT_LT(set.buildings.size(), 40U);
   for (const Building& building : set.buildings) {
@@ -123,12 +121,9 @@ TEST(MakeBuildings, OutlinesThatFitNothingGiveSoundBuildingsOrNone) {
   }
 }
 
-TEST(MakeBuildings, MeasureGivenOutlinesAndNothingElse) {
-  const MadePlace place = TwoHouses();
-  base::ThreadPool threads(2);
-  BuildingsInput input = InputOf(place);
-  input.footprints = {{place.truth[1].footprint, "cadastre 7"}, {{.outer = {{0, 0}, {5, 0}, {5, 5}, {0, 5}}, .holes = {}}, "empty lot"}};
-  const BuildingSet set = MakeBuildings(input, threads);
+TEST_F(MakeBuildingsTest, MeasureGivenOutlinesAndNothingElse) {
+  input_.footprints = {{place_.truth[1].footprint, "cadastre 7"}, {{.outer = {{0, 0}, {5, 0}, {5, 5}, {0, 5}}, .holes = {}}, "empty lot"}};
+  const BuildingSet set = MakeBuildings(input_, threads_);
   ASSERT_EQ(set.buildings.size(), 1U);
   EXPECT_TRUE(set.buildings[0].given);
   EXPECT_EQ(set.buildings[0].given_id, "cadastre 7");
@@ -136,35 +131,30 @@ TEST(MakeBuildings, MeasureGivenOutlinesAndNothingElse) {
 }
 
 // Points that were matched in photos: on the ground where the field has a house, on the roof of the other.
-TEST(MakeBuildings, MatchedPointsDenyRoofsThatOnlyTheFieldHas) {
-  const MadePlace place = TwoHouses();
-  base::ThreadPool threads(2);
-  BuildingsInput input = InputOf(place);
-  const Eigen::Vector2d flat = Centroid(place.truth[1].footprint);
-  for (int i = 0; i < 2; ++i) input.matched.emplace_back(flat.x() + i, flat.y(), 100.0);
-  EXPECT_EQ(MakeBuildings(input, threads).buildings.size(), 2U) << "two wrong matches";
-  for (int i = 0; i < 3; ++i) input.matched.emplace_back(flat.x() - i, flat.y() + 1.0, 100.2);
-  const Eigen::Vector2d gable = Centroid(place.truth[0].footprint);
-  for (int i = 0; i < 5; ++i) input.matched.emplace_back(gable.x() + i, gable.y(), 107.0);
-  const BuildingSet set = MakeBuildings(input, threads);
+TEST_F(MakeBuildingsTest, MatchedPointsDenyRoofsThatOnlyTheFieldHas) {
+  const Eigen::Vector2d flat = Centroid(place_.truth[1].footprint);
+  for (int i = 0; i < 2; ++i) input_.matched.emplace_back(flat.x() + i, flat.y(), 100.0);
+  EXPECT_EQ(MakeBuildings(input_, threads_).buildings.size(), 2U) << "two wrong matches";
+  for (int i = 0; i < 3; ++i) input_.matched.emplace_back(flat.x() - i, flat.y() + 1.0, 100.2);
+  const Eigen::Vector2d gable = Centroid(place_.truth[0].footprint);
+  for (int i = 0; i < 5; ++i) input_.matched.emplace_back(gable.x() + i, gable.y(), 107.0);
+  const BuildingSet set = MakeBuildings(input_, threads_);
   ASSERT_EQ(set.buildings.size(), 1U);
   EXPECT_EQ(set.buildings[0].roof, RoofKind::kGable);
   // Whoever gives an outline knows of the house.
-  input.footprints = {{place.truth[1].footprint, "given"}};
-  EXPECT_EQ(MakeBuildings(input, threads).buildings.size(), 1U);
+  input_.footprints = {{place_.truth[1].footprint, "given"}};
+  EXPECT_EQ(MakeBuildings(input_, threads_).buildings.size(), 1U);
 }
 
 // A roof of many small steps is neither flat nor gable nor hip.
-TEST(MakeBuildings, WhatNoRoofDescribesIsABlock) {
-  MadePlace place = TwoHouses();
-  for (size_t i = 0; i < place.made.surface.size(); ++i) {
-    if (place.made.surface[i] != MadeSurface::kRoof || place.made.building[i] != 2) continue;
-    SurfacePoint& point = place.made.cloud.points[i];
+TEST_F(MakeBuildingsTest, WhatNoRoofDescribesIsABlock) {
+  for (size_t i = 0; i < place_.made.surface.size(); ++i) {
+    if (place_.made.surface[i] != MadeSurface::kRoof || place_.made.building[i] != 2) continue;
+    SurfacePoint& point = place_.made.cloud.points[i];
     const auto step = static_cast<float>(static_cast<int>(std::floor((point.position.x() + point.position.y()) / 3.0F)) & 3);
     point.position.z() += 0.9F * step;
   }
-  base::ThreadPool threads(2);
-  const BuildingSet set = MakeBuildings(InputOf(place), threads);
+  const BuildingSet set = MakeBuildings(input_, threads_);
   int blocks = 0;
   for (const Building& building : set.buildings) {
     EXPECT_TRUE(CheckSolid(building.lod22).empty());

@@ -38,10 +38,8 @@ def check_kernel_files(out, result):
 def check_poses(skyquilt, out):
     small = ["--place", "hamlet", "--set", "simulate.image_width=320", "-o", out]
     skyquilt.call("bench", "poses", "--sets", "plain", "--photos", "9,9", "-o", out, status=2)
-    text = skyquilt.call("bench", "poses", "--sets", "plain", "--photos", "900", *small, status=2)
-    expect("--photos 900" in text and "hamlet" in text, text)
-    text = skyquilt.call("bench", "poses", "--sets", "turned", "--photos", "9", *small)
-    expect("registered" in text and "no fewer photos than COLMAP alone" in text, text)
+    skyquilt.call("bench", "poses", "--sets", "plain", "--photos", "900", *small, status=2, says=("--photos 900", "hamlet"))
+    skyquilt.call("bench", "poses", "--sets", "turned", "--photos", "9", *small, says=("registered", "no fewer photos than COLMAP alone"))
     result = json.loads((out / "poses.json").read_text())
     expect([(row["set"], row["way"]) for row in result["rows"]] == [("turned", "fast"), ("turned", "colmap")], result["rows"])
     for row in result["rows"]:
@@ -57,8 +55,7 @@ def test(skyquilt, folder):
     out = folder / "bench"
     for isa in ("portable", None):
         words = ["bench", "kernel", *SMALL, "-o", out] + (["--isa", isa] if isa else [])
-        text = skyquilt.call(*words)
-        expect("training" in text and "limit" in text, text)
+        skyquilt.call(*words, says=("training", "limit"))
         result = json.loads((out / "kernel.json").read_text())
         for key in ("isa", "threads", "train_samples_per_second", "infer_samples_per_second", "roofline_train_samples_per_second",
                     "roofline_fraction", "share", "config", "machine", "date"):
@@ -73,8 +70,7 @@ def test(skyquilt, folder):
     expect(text.count("Training time by phase") == 1, text)
 
     # A small simulated cluster; settings given on the command line override --quick.
-    text = skyquilt.call("bench", "schedule", "--quick", "--blocks", "300", "--status-every", "60", "-o", out)
-    expect("nothing fails" in text, text)
+    skyquilt.call("bench", "schedule", "--quick", "--blocks", "300", "--status-every", "60", "-o", out, says="nothing fails")
     result = json.loads((out / "schedule.json").read_text())
     expect(result["config"]["blocks"] == 300 and result["config"]["ranks"] == 100, result["config"])
     check_page(out / "schedule.html", "skyquilt bench schedule --quick", result["machine"])

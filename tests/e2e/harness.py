@@ -42,13 +42,15 @@ class Skyquilt:
         launcher = ["mpirun", "-n", str(ranks), "--oversubscribe"] if ranks else []
         return launcher + [self.program] + [str(word) for word in words]
 
-    def call(self, *words, ranks=0, status=0, timeout=900):
-        """Runs to the end and returns everything printed; a different exit status is a failure."""
+    def call(self, *words, ranks=0, status=0, timeout=900, says=()):
+        """Runs to the end and returns everything printed; a different exit status is a failure, and so is a text of `says` that was not printed."""
         shown, began = " ".join(str(word) for word in words), time.monotonic()
         done = subprocess.run(self.command(words, ranks), env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", timeout=timeout)
         print(f"{time.monotonic() - began:6.1f} s  skyquilt {shown}", flush=True)  # what the test's time is spent on
         expect(done.returncode == status, f"'skyquilt {shown}' ended with {done.returncode}, not {status}:\n{done.stdout}")
+        for text in [says] if isinstance(says, str) else says:
+            expect(text in done.stdout, f"'skyquilt {shown}' does not say '{text}':\n{done.stdout}")
         return done.stdout
 
     def start(self, *words, ranks=0):

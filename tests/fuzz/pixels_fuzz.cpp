@@ -1,7 +1,6 @@
 // Headers of photos, and bands of TIFFs.
 #include <vector>
 
-#include "core/base/file.h"
 #include "core/gis/photo_bands.h"
 #include "core/image/image.h"
 #include "core/image/pixel_format.h"

@@ -8,7 +8,6 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
 #include "prepare/prepare.h"
-#include "tests/prepare/synthetic_flight.h"
 
 namespace skyquilt::prepare {
 namespace {

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "core/base/errors.h"
-#include "core/geo/enu_frame.h"
 #include "tests/products/analytic_scene.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"

@@ -8,7 +8,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
@@ -19,10 +18,15 @@
 #include "products/place_metadata.h"
 #include "tests/products/analytic_scene.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::products {
 namespace {
+
+class MapProductsTest : public InTemporaryFolder {
+ protected:
+  AnalyticScene scene_;
+};
 
 // Reads the file like another program: with GDAL's geo-transform, CRS and PROJ instead of our projections.
 class OtherProgram {
@@ -131,8 +135,7 @@ INSTANTIATE_TEST_SUITE_P(Places, AnywhereOnEarth,
                                          geo::Geodetic{-17.0, 179.99999, 10.0}, geo::Geodetic{64.1, -21.9, 9000.0}, geo::Geodetic{78.2, 15.6, 40.0},
                                          geo::Geodetic{-54.8, -68.3, 5.0}, geo::Geodetic{89.9999, 10.0, 0.0}, geo::Geodetic{-90.0, 0.0, 2800.0}));
 
-TEST(MapProducts, StayRightOverTensOfKilometres) {
-  const TemporaryFolder folder;
+TEST_F(MapProductsTest, StayRightOverTensOfKilometres) {
   AnalyticScene scene;
   scene.house_min = {2000.0, -9000.0};
   scene.house_max = {12000.0, 3000.0};
@@ -144,7 +147,7 @@ TEST(MapProducts, StayRightOverTensOfKilometres) {
   info.blocks.resize(1);
   info.blocks[0].min_enu = info.min_enu;
   info.blocks[0].max_enu = info.max_enu;
-  const MapProducts products = MakeMapProducts(info, scene.Caster(), ProductOptions{}, folder.path());
+  const MapProducts products = MakeMapProducts(info, scene.Caster(), ProductOptions{}, folder_.path());
   const OtherProgram dsm(products.dsm);
   const std::vector<float> height = dsm.Band(1);
   const geo::EnuFrame frame(info.origin);
@@ -167,11 +170,10 @@ TEST(MapProducts, StayRightOverTensOfKilometres) {
   }
 }
 
-TEST(MapProducts, PlacesWithoutSurfaceHaveNoData) {
-  const TemporaryFolder folder;
+TEST_F(MapProductsTest, PlacesWithoutSurfaceHaveNoData) {
   AnalyticScene scene;
   scene.open_west = -30.0;
-  const MapProducts products = MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path());
+  const MapProducts products = MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), ProductOptions{}, folder_.path());
   EXPECT_NEAR(products.filled, 0.75, 0.02);
   const std::vector<float> alpha = OtherProgram(products.orthophoto).Band(4);
   const std::vector<float> height = OtherProgram(products.dsm).Band(1);
@@ -184,10 +186,8 @@ TEST(MapProducts, PlacesWithoutSurfaceHaveNoData) {
   EXPECT_GT(with_data, alpha.size() / 2);
 }
 
-TEST(MapProducts, WithoutGeoReferenceTheyAreLocal) {
-  const TemporaryFolder folder;
-  const AnalyticScene scene;
-  const MapProducts products = MakeMapProducts(scene.Info({}, false), scene.Caster(), ProductOptions{}, folder.path());
+TEST_F(MapProductsTest, WithoutGeoReferenceTheyAreLocal) {
+  const MapProducts products = MakeMapProducts(scene_.Info({}, false), scene_.Caster(), ProductOptions{}, folder_.path());
   const OtherProgram dsm(products.dsm);
   EXPECT_TRUE(dsm.dataset()->GetSpatialRef() == nullptr || dsm.dataset()->GetSpatialRef()->IsEmpty());
   EXPECT_EQ(dsm.transform()[0], -60.0);
@@ -206,12 +206,10 @@ std::string Item(const std::filesystem::path& file, const char* key) {
   return value == nullptr ? "" : value;
 }
 
-TEST(MapProducts, SayHowAccurateTheirPlaceIs) {
-  const TemporaryFolder folder;
-  const AnalyticScene scene;
-  scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
+TEST_F(MapProductsTest, SayHowAccurateTheirPlaceIs) {
+  scene::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   info.accuracy = {.scale_percent = 0.412345, .tilt_deg = 0.3, .yaw_deg = 0.25, .horizontal_m = 1.53};
-  const MapProducts products = MakeMapProducts(info, scene.Caster(), ProductOptions{}, folder.path());
+  const MapProducts products = MakeMapProducts(info, scene_.Caster(), ProductOptions{}, folder_.path());
   for (const std::filesystem::path& file : {products.orthophoto, products.dsm}) {
     EXPECT_EQ(Item(file, "GEOREFERENCE"), "fitted to GPS tags");
     EXPECT_EQ(Item(file, "ACCURACY_SCALE_PERCENT"), "0.412");
@@ -225,7 +223,7 @@ TEST(MapProducts, SayHowAccurateTheirPlaceIs) {
             "Orthophoto, placed on Earth by its GPS tags with a standard deviation of 1.53 m horizontally, unknown vertically, 0.3 degrees in tilt, "
             "0.25 degrees in yaw, 0.412 % in scale.");
   EXPECT_EQ(Item(products.dsm, "VERTICAL_REFERENCE"), "unknown: the GPS tags have no usable heights");
-  const auto map = base::ParseJson(base::ReadFile(folder.path() / "orthophoto.json"));
+  const auto map = base::ParseJson(base::ReadFile(folder_.path() / "orthophoto.json"));
   EXPECT_EQ(map["georeference"], "fitted to GPS tags");
   EXPECT_EQ(map["accuracy"]["scale_percent"], 0.412345);
   EXPECT_EQ(map["accuracy"]["horizontal_m"], 1.53);
@@ -233,20 +231,18 @@ TEST(MapProducts, SayHowAccurateTheirPlaceIs) {
 }
 
 // A level scene 100 m above the ellipsoid, where the geoid is 48.411 m above it.
-TEST(MapProducts, ConvertHeights) {
-  const TemporaryFolder folder;
-  const AnalyticScene scene;
-  scene::SceneInfo info = scene.Info({52.0, -1.5, 100.0 - scene.ground_z}, true);
+TEST_F(MapProductsTest, ConvertHeights) {
+  scene::SceneInfo info = scene_.Info({52.0, -1.5, 100.0 - scene_.ground_z}, true);
   ProductOptions options;
   options.ortho = false;
   const auto ground = [&](const std::string& vertical) {
     options.vertical = vertical;
-    const MapProducts products = MakeMapProducts(info, scene.Caster(), options, folder.path());
+    const MapProducts products = MakeMapProducts(info, scene_.Caster(), options, folder_.path());
     const OtherProgram dsm(products.dsm);
     const Eigen::Vector2d pixel = dsm.PixelOf(-1.5, 52.0) + Eigen::Vector2d(-20.0, 20.0);  // the ground 14 m south-west of the origin
     return static_cast<double>(dsm.Band(1)[static_cast<size_t>(pixel.y()) * static_cast<size_t>(dsm.Width()) + static_cast<size_t>(pixel.x())]);
   };
-  const std::filesystem::path dsm = folder / "dsm.tif";
+  const std::filesystem::path dsm = folder_ / "dsm.tif";
   info.height_reference = geo::HeightReference::kEllipsoid;
   const double given = ground("as-tagged");
   EXPECT_NEAR(given, 100.0, 0.01);
@@ -321,13 +317,11 @@ TEST(PlaceMetadata, NamesTheGeoreference) {
   EXPECT_EQ(items(level, false).at("TIFFTAG_IMAGEDESCRIPTION"), "Map in a local frame of unknown scale, without a place on Earth.");
 }
 
-TEST(MapProducts, LargeMapsHaveOverviewsAndTiles) {
-  const TemporaryFolder folder;
-  const AnalyticScene scene;
+TEST_F(MapProductsTest, LargeMapsHaveOverviewsAndTiles) {
   ProductOptions options;
   options.resolution_m = 0.1;
   options.dsm = false;
-  const MapProducts products = MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), options, folder.path());
+  const MapProducts products = MakeMapProducts(scene_.Info({41.38, 2.17, 50.0}, true), scene_.Caster(), options, folder_.path());
   const OtherProgram ortho(products.orthophoto);
   EXPECT_GE(ortho.dataset()->GetRasterBand(1)->GetOverviewCount(), 2);
   int block_width = 0;
@@ -337,16 +331,14 @@ TEST(MapProducts, LargeMapsHaveOverviewsAndTiles) {
   EXPECT_EQ(block_height, 256);
   EXPECT_STREQ(ortho.dataset()->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE"), "DEFLATE");
   EXPECT_TRUE(products.dsm.empty());
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "dsm.tif"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "dsm.tif"));
 }
 
-TEST(MapProducts, PreviewsLieInTheLocalFrame) {
-  const TemporaryFolder folder;
-  const AnalyticScene scene;
+TEST_F(MapProductsTest, PreviewsLieInTheLocalFrame) {
   // Far from the zone's central meridian, map north and true north differ by two degrees.
-  MakeMapProducts(scene.Info({50.0, 5.9, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path());
-  const image::Image8 picture = image::LoadRgb8(folder.path() / "orthophoto.png");
-  const auto bounds = base::ParseJson(base::ReadFile(folder.path() / "orthophoto.json"));
+  MakeMapProducts(scene_.Info({50.0, 5.9, 50.0}, true), scene_.Caster(), ProductOptions{}, folder_.path());
+  const image::Image8 picture = image::LoadRgb8(folder_.path() / "orthophoto.png");
+  const auto bounds = base::ParseJson(base::ReadFile(folder_.path() / "orthophoto.json"));
   EXPECT_EQ(bounds["min_enu"][0], -60.0);
   EXPECT_EQ(bounds["max_enu"][1], 50.0);
   EXPECT_EQ(bounds["crs"], "EPSG:32631");
@@ -360,18 +352,17 @@ TEST(MapProducts, PreviewsLieInTheLocalFrame) {
       const bool near_edge = std::abs(east) < 1 || std::abs(east - 10) < 1 || std::abs(east - 40) < 1 || std::abs(north + 20) < 1 ||
                              std::abs(north - 10) < 1 || std::abs(east) > 59 || std::abs(north) > 49;
       if (near_edge) continue;
-      const int channel = scene.InHouse(east, north) ? 2 : east > 0 ? 0 : 1;
+      const int channel = scene_.InHouse(east, north) ? 2 : east > 0 ? 0 : 1;
       if (picture.At(x, y)[channel] != 255 || picture.At(x, y)[(channel + 1) % 3] != 0) ++wrong;
     }
   }
   EXPECT_EQ(wrong, 0);
-  const image::Image8 relief = image::LoadRgb8(folder.path() / "dsm.png");
+  const image::Image8 relief = image::LoadRgb8(folder_.path() / "dsm.png");
   EXPECT_EQ(relief.width, 240);
 }
 
-TEST(MapProducts, TooManyCellsAreRefusedOrCoarsened) {
-  const AnalyticScene scene;
-  const scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
+TEST_F(MapProductsTest, TooManyCellsAreRefusedOrCoarsened) {
+  const scene::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   ProductOptions options;
   options.max_pixels = 20000;
   const gis::MapGrid coarse = PlanMapGrid(info, options);
@@ -386,9 +377,8 @@ TEST(MapProducts, TooManyCellsAreRefusedOrCoarsened) {
   EXPECT_THROW(PlanMapGrid(info, options), base::UsageError);
 }
 
-TEST(MapProducts, RaysStayInTheBoxesAboveTheirCell) {
-  const AnalyticScene scene;
-  scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
+TEST_F(MapProductsTest, RaysStayInTheBoxesAboveTheirCell) {
+  scene::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   info.blocks[0].max_enu.z() = 8.0;
   const gis::MapGrid grid = PlanMapGrid(info, ProductOptions{});
   const MapRayGenerator maker(info, grid);
@@ -403,10 +393,9 @@ TEST(MapProducts, RaysStayInTheBoxesAboveTheirCell) {
   }
 }
 
-TEST(MapProducts, RaysAreColumnsAsWideAsTheirCell) {
-  const AnalyticScene scene;
+TEST_F(MapProductsTest, RaysAreColumnsAsWideAsTheirCell) {
   for (const bool georeferenced : {true, false}) {
-    const scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, georeferenced);
+    const scene::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, georeferenced);
     ProductOptions options;
     options.resolution_m = 0.75;
     const gis::MapGrid grid = PlanMapGrid(info, options);
@@ -421,13 +410,9 @@ TEST(MapProducts, RaysAreColumnsAsWideAsTheirCell) {
   }
 }
 
-TEST(MapProducts, CancellingLeavesNoFileBehind) {
-  const TemporaryFolder folder;
-  const AnalyticScene scene;
-  base::RequestCancel();
-  EXPECT_THROW(MakeMapProducts(scene.Info({41.38, 2.17, 50.0}, true), scene.Caster(), ProductOptions{}, folder.path()), base::Interrupted);
-  base::ClearCancel();
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+TEST_F(MapProductsTest, CancellingLeavesNoFileBehind) {
+  ExpectStopsWhenAsked([&] { MakeMapProducts(scene_.Info({41.38, 2.17, 50.0}, true), scene_.Caster(), ProductOptions{}, folder_.path()); });
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
 TEST(NiceResolution, IsOneTwoOrFive) {

@@ -5,10 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 
-#include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/base/order_statistics.h"
@@ -183,9 +180,7 @@ TEST_F(PointPreviewTest, CamerasBelowTheGroundMakeNone) {
 
 TEST_F(PointPreviewTest, CanBeInterrupted) {
   const survey::Survey survey = World::Write(folder_.path(), 0.0, false);
-  base::RequestCancel();
-  EXPECT_THROW(MakePointPreview(survey, {}, folder_ / "products", threads_), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { MakePointPreview(survey, {}, folder_ / "products", threads_); });
   EXPECT_FALSE(FindPreview(folder_ / "products", kFromSparsePoints));
 }
 

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/cancel.h"
 #include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "core/camera/pixel_pitch.h"
@@ -16,10 +15,14 @@
 #include "products/camera_path.h"
 #include "products/video_writer.h"
 #include "tests/products/analytic_scene.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/error_of.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::products {
 namespace {
+
+using RenderViewsTest = InTemporaryFolder;
+using VideoWriterTest = InTemporaryFolder;
 
 struct VideoFacts {
   int frames = 0;
@@ -60,25 +63,24 @@ VideoFacts Inspect(const std::filesystem::path& file) {
   return facts;
 }
 
-TEST(RenderViews, DepthRunsAlongTheRay) {
-  const TemporaryFolder folder;
+TEST_F(RenderViewsTest, DepthRunsAlongTheRay) {
   const AnalyticScene scene;
   View view;
   view.name = "nadir";
   view.camera = PinholeCamera(64, 48, 60.0);
   view.cam_from_enu = PoseFromAngles({-40.0, 0.0, 105.0}, 0.0, -90.0, 0.0);
   base::ThreadPool threads(2);
-  const RenderStats stats = RenderViews(RendererOf(scene.Caster()), {view}, folder.path(), {}, threads);
+  const RenderStats stats = RenderViews(RendererOf(scene.Caster()), {view}, folder_.path(), {}, threads);
   EXPECT_EQ(stats.views, 1);
   EXPECT_EQ(stats.rays, 64 * 48);
-  const image::ImageF depth = image::LoadFloatTiff(folder.path() / "nadir_depth.tiff");
+  const image::ImageF depth = image::LoadFloatTiff(folder_.path() / "nadir_depth.tiff");
   ASSERT_EQ(depth.width, 64);
   const double f = view.camera.FocalX();
   for (const auto& [x, y] : {std::pair{0, 0}, {31, 23}, {10, 40}}) {
     const Eigen::Vector2d offset = (Eigen::Vector2d(x + 0.5, y + 0.5) - Eigen::Vector2d(32, 24)) / f;
     EXPECT_NEAR(static_cast<double>(*depth.At(x, y)), 100.0 * std::sqrt(1.0 + offset.squaredNorm()), 1e-3);
   }
-  const image::Image8 picture = image::LoadRgb8(folder.path() / "nadir.png");
+  const image::Image8 picture = image::LoadRgb8(folder_.path() / "nadir.png");
   EXPECT_EQ(picture.At(0, 24)[1], 255) << "green in the west";
   EXPECT_EQ(picture.At(63, 0)[0], 255) << "red in the east";
   // The house's west wall begins 50 m east of the camera and 100 m below it: 27.7 px right of the centre.
@@ -86,7 +88,7 @@ TEST(RenderViews, DepthRunsAlongTheRay) {
   EXPECT_EQ(picture.At(61, 24)[2], 255) << "wall";
 }
 
-TEST(RenderViews, RaysAreTheConesOfTheirPixels) {
+TEST_F(RenderViewsTest, RaysAreTheConesOfTheirPixels) {
   View view;
   view.camera = PinholeCamera(64, 48, 60.0);
   view.cam_from_enu = PoseFromAngles({-40.0, 0.0, 105.0}, 0.0, -90.0, 0.0);
@@ -103,30 +105,28 @@ TEST(RenderViews, RaysAreTheConesOfTheirPixels) {
   EXPECT_NEAR(static_cast<double>(seen[24 * 64 + 32].pixel_pitch), 1.0 / view.camera.FocalX(), 2e-3 / view.camera.FocalX());
 }
 
-TEST(RenderViews, SkyIsBlackWithoutDepth) {
-  const TemporaryFolder folder;
+TEST_F(RenderViewsTest, SkyIsBlackWithoutDepth) {
   View view;
   view.name = "up";
   view.camera = PinholeCamera(8, 6, 60.0);
   view.cam_from_enu = PoseFromAngles({0.0, 0.0, 105.0}, 0.0, 80.0, 0.0);
   base::ThreadPool threads(2);
-  RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder.path(), {}, threads);
-  EXPECT_TRUE(std::isnan(*image::LoadFloatTiff(folder.path() / "up_depth.tiff").At(3, 3)));
-  EXPECT_EQ(image::LoadRgb8(folder.path() / "up.png").At(3, 3)[0], 0);
+  RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder_.path(), {}, threads);
+  EXPECT_TRUE(std::isnan(*image::LoadFloatTiff(folder_.path() / "up_depth.tiff").At(3, 3)));
+  EXPECT_EQ(image::LoadRgb8(folder_.path() / "up.png").At(3, 3)[0], 0);
 }
 
 // Ground, roof and the wall that the camera sees, in a camera that looks down at an angle.
-TEST(RenderViews, NormalsPointOutOfGroundRoofAndWall) {
-  const TemporaryFolder folder;
+TEST_F(RenderViewsTest, NormalsPointOutOfGroundRoofAndWall) {
   const AnalyticScene scene;
   View view;
   view.name = "oblique";
   view.camera = PinholeCamera(120, 90, 60.0);
   view.cam_from_enu = PoseFromAngles({-40.0, -5.0, 60.0}, 90.0, -40.0, 0.0);
   base::ThreadPool threads(2);
-  RenderViews(RendererOf(scene.Caster()), {view}, folder.path(), {.depth = false, .normals = NormalKind::kDepth}, threads);
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "oblique_depth.tiff"));
-  const image::ImageF normals = image::LoadNormals(folder.path() / "oblique_normals.png");
+  RenderViews(RendererOf(scene.Caster()), {view}, folder_.path(), {.depth = false, .normals = NormalKind::kDepth}, threads);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "oblique_depth.tiff"));
+  const image::ImageF normals = image::LoadNormals(folder_.path() / "oblique_normals.png");
   ASSERT_EQ(normals.width, 120);
   const auto normal_at = [&](const Eigen::Vector3d& x_in_enu) {
     const std::optional<Eigen::Vector2d> pixel = view.camera.ImgFromCam(view.cam_from_enu * x_in_enu);
@@ -138,14 +138,14 @@ TEST(RenderViews, NormalsPointOutOfGroundRoofAndWall) {
   EXPECT_LT((normal_at({10.0, -5.0, 15.0}) - Eigen::Vector3f(-1, 0, 0)).norm(), 2e-3F) << "wall towards the west";
 }
 
-TEST(RenderViews, NormalsHaveNames) {
+TEST_F(RenderViewsTest, NormalsHaveNames) {
   EXPECT_EQ(NormalKindNamed("depth"), NormalKind::kDepth);
   EXPECT_EQ(NormalKindNamed("density"), NormalKind::kDensity);
   EXPECT_EQ(NormalKindNamed("predicted"), NormalKind::kPredicted);
   EXPECT_THROW(NormalKindNamed("guessed"), base::UsageError);
 }
 
-TEST(RenderViews, PredictedNormalsNeedAHead) {
+TEST_F(RenderViewsTest, PredictedNormalsNeedAHead) {
   scene::SceneInfo info = AnalyticScene{}.Info({41.0, 2.0, 0.0}, true);
   EXPECT_NO_THROW(RequireNormals(NormalKind::kDensity, info));
   EXPECT_THROW(RequireNormals(NormalKind::kPredicted, info), base::UsageError);
@@ -154,8 +154,7 @@ TEST(RenderViews, PredictedNormalsNeedAHead) {
 }
 
 // Rays that return their normals: pixels that are not half opaque have none.
-TEST(RenderViews, RenderedNormalsAreThoseOfTheRays) {
-  const TemporaryFolder folder;
+TEST_F(RenderViewsTest, RenderedNormalsAreThoseOfTheRays) {
   const RayCaster caster = [](std::span<const render::Ray> rays, std::span<render::RayColor> out) {
     for (size_t i = 0; i < rays.size(); ++i) {
       out[i].depth_median = i == 0 ? std::nanf("") : 3.0F;
@@ -167,14 +166,14 @@ TEST(RenderViews, RenderedNormalsAreThoseOfTheRays) {
   view.name = "v";
   view.camera = PinholeCamera(4, 2, 60.0);
   base::ThreadPool threads(1);
-  RenderViews(RendererOf(caster), {view}, folder.path(), {.depth = true, .normals = NormalKind::kDensity}, threads);
-  const image::ImageF density = image::LoadNormals(folder.path() / "v_normals.png");
+  RenderViews(RendererOf(caster), {view}, folder_.path(), {.depth = true, .normals = NormalKind::kDensity}, threads);
+  const image::ImageF density = image::LoadNormals(folder_.path() / "v_normals.png");
   EXPECT_TRUE(std::isnan(*density.At(0, 0))) << "not half opaque";
   EXPECT_NEAR(density.At(1, 0)[0], 1.0F, 1e-4F);
   EXPECT_TRUE(std::isnan(*density.At(2, 0))) << "no normal";
   EXPECT_NEAR(density.At(3, 0)[2], 1.0F, 1e-4F);
-  RenderViews(RendererOf(caster), {view}, folder.path(), {.depth = true, .normals = NormalKind::kPredicted}, threads);
-  EXPECT_NEAR(image::LoadNormals(folder.path() / "v_normals.png").At(2, 0)[1], -1.0F, 1e-4F);
+  RenderViews(RendererOf(caster), {view}, folder_.path(), {.depth = true, .normals = NormalKind::kPredicted}, threads);
+  EXPECT_NEAR(image::LoadNormals(folder_.path() / "v_normals.png").At(2, 0)[1], -1.0F, 1e-4F);
 }
 
 TEST(RenderVideo, HasOneFramePerView) {
@@ -197,21 +196,15 @@ TEST(RenderVideo, HasOneFramePerView) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "nothing else is left";
 }
 
-TEST(VideoWriter, WithoutFfmpegItSaysWhatToInstall) {
-  const TemporaryFolder folder;
-  try {
-    VideoWriter(folder.path() / "video.mp4", 64, 48, 10, "a-program-that-is-not-there");
-    FAIL() << "no error";
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("apt install ffmpeg"), std::string::npos) << error.what();
-  }
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+TEST_F(VideoWriterTest, WithoutFfmpegItSaysWhatToInstall) {
+  const std::string error = InputErrorOf([&] { VideoWriter(folder_.path() / "video.mp4", 64, 48, 10, "a-program-that-is-not-there"); });
+  EXPECT_NE(error.find("apt install ffmpeg"), std::string::npos) << error;
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
-TEST(VideoWriter, WritesH264) {
+TEST_F(VideoWriterTest, WritesH264) {
   if (!CanWriteVideos()) GTEST_SKIP() << "the program ffmpeg is not installed";
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "with space 'quote.mp4";
+  const std::filesystem::path file = folder_.path() / "with space 'quote.mp4";
   VideoWriter video(file, 64, 48, 10);
   image::Image8 frame(64, 48, 3, 0);
   for (size_t i = 0; i < frame.data.size(); i += 3) frame.data[i] = 230;
@@ -225,9 +218,8 @@ TEST(VideoWriter, WritesH264) {
   EXPECT_LT(facts.middle[2], 60);
 }
 
-TEST(VideoWriter, AProgramThatDiesIsReported) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "video.mp4";
+TEST_F(VideoWriterTest, AProgramThatDiesIsReported) {
+  const std::filesystem::path file = folder_.path() / "video.mp4";
   EXPECT_THROW(
       {
         VideoWriter video(file, 640, 480, 10, "false");
@@ -236,28 +228,24 @@ TEST(VideoWriter, AProgramThatDiesIsReported) {
         video.Close();
       },
       base::InputError);
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
-TEST(VideoWriter, LeavesNothingWhenAbandoned) {
+TEST_F(VideoWriterTest, LeavesNothingWhenAbandoned) {
   if (!CanWriteVideos()) GTEST_SKIP() << "the program ffmpeg is not installed";
-  const TemporaryFolder folder;
   {
-    VideoWriter video(folder.path() / "video.mp4", 64, 48, 10);
+    VideoWriter video(folder_.path() / "video.mp4", 64, 48, 10);
     video.Write(image::Image8(64, 48, 3, 100));
   }
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
-TEST(RenderViews, StopsWhenCancelled) {
-  const TemporaryFolder folder;
+TEST_F(RenderViewsTest, StopsWhenCancelled) {
   View view;
   view.name = "x";
   view.camera = PinholeCamera(8, 6, 60.0);
   base::ThreadPool threads(1);
-  base::RequestCancel();
-  EXPECT_THROW(RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder.path(), {}, threads), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { RenderViews(RendererOf(AnalyticScene{}.Caster()), {view}, folder_.path(), {}, threads); });
 }
 
 TEST(ProductOptions, RefuseWhatCannotBe) {

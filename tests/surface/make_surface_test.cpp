@@ -5,17 +5,14 @@
 #include <Eigen/Geometry>
 #include <atomic>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "surface/fuse_mesh.h"
 #include "surface/fusion/fuse.h"
 #include "surface/map_frame.h"
-#include "surface/tile_store.h"
 #include "tests/products/analytic_scene.h"
 #include "tests/support/error_of.h"
 #include "tests/support/nadir_photo.h"

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "core/base/errors.h"
 #include "core/image/srgb.h"
 #include "core/scene/field_file.h"
 #include "tests/worker/small_survey.h"

@@ -1,7 +1,6 @@
 // Trainings whose rays are cones and come from photos of several sizes: bits, resuming and the stored range of footprints.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 

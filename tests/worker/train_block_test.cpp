@@ -8,6 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/scene/field_file.h"
+#include "tests/support/error_of.h"
 #include "tests/worker/small_survey.h"
 #include "worker/block_session.h"
 #include "worker/start/starting_occupancy.h"
@@ -124,26 +125,15 @@ TEST_F(TrainBlockTest, HeldOutPhotosLeaveNoTrace) {
 TEST(TrainOptions, RefusesImpossibleValuesByName) {
   TrainOptions options;
   options.hidden = 30;
-  try {
-    options.Check("train");
-    FAIL();
-  } catch (const base::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("train.hidden"), std::string::npos);
-  }
+  const std::string error = UsageErrorOf([&] { options.Check("train"); });
+  EXPECT_NE(error.find("train.hidden"), std::string::npos);
   options = {};
   options.coupling = "joint";
   EXPECT_THROW(options.Check("train"), base::UsageError);
   options = {};
   options.start = "nowhere";
   EXPECT_THROW(options.Check("train"), base::UsageError);
-  const auto refusal = [](const TrainOptions& refused) -> std::string {
-    try {
-      refused.Check("context");
-    } catch (const base::UsageError& error) {
-      return error.what();
-    }
-    return "";
-  };
+  const auto refusal = [](const TrainOptions& refused) -> std::string { return UsageErrorOf([&] { refused.Check("context"); }); };
   options = {};
   options.encoding = "cubes";
   EXPECT_EQ(refusal(options), "context.encoding = \"cubes\" is not allowed: it must be hash, voxels, planes or frequency");

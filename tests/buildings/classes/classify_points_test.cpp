@@ -9,10 +9,9 @@
 #include <set>
 #include <string>
 
-#include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "tests/buildings/sample_buildings.h"
 #include "tests/buildings/sample_clouds.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::buildings {
 namespace {
@@ -279,9 +278,7 @@ TEST(ClassifyPoints, UnknownGroundAndDamagedPointsAreOther) {
 
 TEST(ClassifyPoints, StopsWhenAsked) {
   const Scene scene({MadeHouse({})});
-  base::RequestCancel();
-  EXPECT_THROW(scene.Classes(), base::Interrupted);
-  base::WithdrawRequest();
+  ExpectStopsWhenAsked([&] { scene.Classes(); });
 }
 
 TEST(PointClass, NamesAndCodesAreDistinct) {

@@ -6,10 +6,12 @@
 
 #include "buildings/files/building_files.h"
 #include "tests/buildings/files/sample_set.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::buildings {
 namespace {
+
+using BuildingsPackage = InTemporaryFolder;
 
 struct Close {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
@@ -22,11 +24,10 @@ Opened WrittenPackage(const BuildingSet& set, const surface::MapFrame& frame, co
   return Opened(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
 }
 
-TEST(BuildingsPackage, HoldsFootprintsWithTheirHoles) {
-  const TemporaryFolder folder;
+TEST_F(BuildingsPackage, HoldsFootprintsWithTheirHoles) {
   const BuildingSet set = SampleSet();
   const surface::MapFrame frame = SampleFrame();
-  const Opened file = WrittenPackage(set, frame, folder / "buildings.gpkg");
+  const Opened file = WrittenPackage(set, frame, folder_ / "buildings.gpkg");
   ASSERT_NE(file, nullptr);
   EXPECT_EQ(file->GetLayerCount(), 2);
   OGRLayer* layer = file->GetLayerByName("footprints");
@@ -53,11 +54,10 @@ TEST(BuildingsPackage, HoldsFootprintsWithTheirHoles) {
   EXPECT_NE(std::string(layer->GetMetadataItem("DESCRIPTION")).find("EPSG:32632"), std::string::npos);
 }
 
-TEST(BuildingsPackage, HoldsSolidsInSpace) {
-  const TemporaryFolder folder;
+TEST_F(BuildingsPackage, HoldsSolidsInSpace) {
   const BuildingSet set = SampleSet();
   const surface::MapFrame frame = SampleFrame();
-  const Opened file = WrittenPackage(set, frame, folder / "buildings.gpkg");
+  const Opened file = WrittenPackage(set, frame, folder_ / "buildings.gpkg");
   OGRLayer* layer = file->GetLayerByName("solids");
   ASSERT_NE(layer, nullptr);
   EXPECT_EQ(layer->GetGeomType(), wkbMultiPolygon25D);
@@ -81,16 +81,15 @@ TEST(BuildingsPackage, HoldsSolidsInSpace) {
   EXPECT_EQ(next, set.buildings.size());
 }
 
-TEST(BuildingsPackage, WithoutGeoreferenceIsLocal) {
-  const TemporaryFolder folder;
+TEST_F(BuildingsPackage, WithoutGeoreferenceIsLocal) {
   BuildingSet set = SampleSet();
   set.metric = false;
-  const Opened file = WrittenPackage(set, SampleFrame(false), folder / "buildings.gpkg");
+  const Opened file = WrittenPackage(set, SampleFrame(false), folder_ / "buildings.gpkg");
   OGRLayer* layer = file->GetLayerByName("footprints");
   EXPECT_TRUE(layer->GetSpatialRef() == nullptr || layer->GetSpatialRef()->IsLocal());
   EXPECT_GE(layer->GetLayerDefn()->GetFieldIndex("length"), 0);
   EXPECT_LT(layer->GetLayerDefn()->GetFieldIndex("length_m"), 0);
-  const Opened empty = WrittenPackage({}, SampleFrame(), folder / "none.gpkg");
+  const Opened empty = WrittenPackage({}, SampleFrame(), folder_ / "none.gpkg");
   EXPECT_EQ(empty->GetLayerByName("solids")->GetFeatureCount(), 0);
 }
 

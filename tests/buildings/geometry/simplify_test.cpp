@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <cmath>
-
 #include "buildings/geometry/polygon.h"
 #include "buildings/geometry/rings.h"
 #include "tests/buildings/geometry/made_polygons.h"

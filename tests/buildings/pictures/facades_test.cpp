@@ -12,7 +12,6 @@
 
 #include "buildings/pictures/building_pictures.h"
 #include "buildings/pictures/wall_sides.h"
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
@@ -242,9 +241,7 @@ TEST(WriteFacades, CancelledRunsAndBrokenFoldersAreReported) {
   const surface::MapFrame map{scene::SceneInfo{}};
   const BuildingSet set;
   const FileFrame frame(set, map);
-  base::RequestCancel();
-  EXPECT_THROW(WriteFacades(MadeHouse(house.plan), house.Caster(), frame, 0.1, folder.path(), threads), base::Interrupted);
-  base::WithdrawRequest();
+  ExpectStopsWhenAsked([&] { WriteFacades(MadeHouse(house.plan), house.Caster(), frame, 0.1, folder.path(), threads); });
   EXPECT_FALSE(std::filesystem::exists(folder / "facade_1.json"));
   std::ofstream(folder / "file") << "x";
   EXPECT_NE(InputErrorOf([&] { WriteFacades(MadeHouse(house.plan), house.Caster(), frame, 0.1, folder / "file", threads); }), "");

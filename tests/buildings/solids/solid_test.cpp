@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "tests/buildings/solids/made_solids.h"
 
 namespace skyquilt::buildings {

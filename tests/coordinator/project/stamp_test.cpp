@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/support/project_fixture.h"
 
 namespace skyquilt::coordinator {
@@ -28,15 +29,10 @@ TEST_F(Stamp, ChangedOptionIsNamedWithBothValuesAndTheFix) {
   Finish("train");
   FlatOptions changed = options_;
   changed["train.steps"] = "4000";
-  try {
-    CheckStage(project_, "train", changed, inputs_, {project_.SceneFile()});
-    FAIL() << "nothing thrown";
-  } catch (const base::UsageError& error) {
-    const std::string text = error.what();
-    EXPECT_NE(text.find("train.steps: 2000 -> 4000"), std::string::npos) << text;
-    EXPECT_NE(text.find("--restart"), std::string::npos) << text;
-    EXPECT_EQ(text.find("train.levels"), std::string::npos) << text;
-  }
+  const std::string text = UsageErrorOf([&] { CheckStage(project_, "train", changed, inputs_, {project_.SceneFile()}); });
+  EXPECT_NE(text.find("train.steps: 2000 -> 4000"), std::string::npos) << text;
+  EXPECT_NE(text.find("--restart"), std::string::npos) << text;
+  EXPECT_EQ(text.find("train.levels"), std::string::npos) << text;
 }
 
 TEST_F(Stamp, ChangedInputIsSeen) {
@@ -47,12 +43,9 @@ TEST_F(Stamp, ChangedInputIsSeen) {
 
 TEST_F(Stamp, DamagedStampIsAnInputErrorThatNamesTheFile) {
   Touch(project_.StampFile("train"), "{ half");
-  try {
-    CheckStage(project_, "train", options_, inputs_, {project_.SceneFile()});
-    FAIL() << "nothing thrown";
-  } catch (const base::InputError& error) {
-    EXPECT_EQ(error.file(), project_.StampFile("train"));
-  }
+  const auto error = Caught<base::InputError>([&] { CheckStage(project_, "train", options_, inputs_, {project_.SceneFile()}); });
+  ASSERT_TRUE(error) << "nothing thrown";
+  EXPECT_EQ(error->file(), project_.StampFile("train"));
 }
 
 TEST_F(Stamp, PhotosIdentityDependsOnImagesOnly) {

@@ -13,6 +13,7 @@
 #include "core/base/errors.h"
 #include "core/base/random.h"
 #include "fake_ranks.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -190,19 +191,16 @@ TEST_F(Coordinate, BadInputOfAnyRankEndsTheCommandWithItsMessage) {
       }
       return Good(job);
     };
-    try {
-      Play(n_ranks, {Named(0, n_ranks == 4 ? 3.0 : 0.5), Named(1, 1.0), Named(2, 2.0)}, trainer);
-      FAIL() << "nothing thrown with " << n_ranks << " ranks";
-    } catch (const base::InputError& error) {
-      const std::string text = error.what();
-      if (n_ranks == 1) {
-        EXPECT_EQ(text, "photos/a.jpg: is cut short. Copy it again");
-      } else {
-        EXPECT_TRUE(text.starts_with("photos/a.jpg: rank ") && text.find(" on node") != std::string::npos) << text;
-        EXPECT_NE(text.find(": is cut short. Copy it again"), std::string::npos) << text;
-      }
-      EXPECT_EQ(error.file(), "photos/a.jpg");
+    const auto error = Caught<base::InputError>([&] { Play(n_ranks, {Named(0, n_ranks == 4 ? 3.0 : 0.5), Named(1, 1.0), Named(2, 2.0)}, trainer); });
+    ASSERT_TRUE(error) << "nothing thrown with " << n_ranks << " ranks";
+    const std::string text = error->what();
+    if (n_ranks == 1) {
+      EXPECT_EQ(text, "photos/a.jpg: is cut short. Copy it again");
+    } else {
+      EXPECT_TRUE(text.starts_with("photos/a.jpg: rank ") && text.find(" on node") != std::string::npos) << text;
+      EXPECT_NE(text.find(": is cut short. Copy it again"), std::string::npos) << text;
     }
+    EXPECT_EQ(error->file(), "photos/a.jpg");
   }
 }
 

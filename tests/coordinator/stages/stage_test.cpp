@@ -9,6 +9,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "tests/support/connect_alone.h"
+#include "tests/support/error_of.h"
 #include "tests/support/project_fixture.h"
 
 namespace skyquilt::coordinator {
@@ -204,13 +205,10 @@ TEST_F(StageFiles, ADamagedInputChangesNoFiles) {
 TEST_F(StageFiles, AStageWhoseInputIsMissingNamesFileAndCommand) {
   const auto comm = comm::ConnectAlone();
   Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
-  try {
-    MergeStage(pipeline);
-    FAIL() << "nothing thrown";
-  } catch (const base::InputError& error) {
-    EXPECT_EQ(error.file(), project_.BlocksFile());
-    EXPECT_NE(std::string(error.what()).find("skyquilt partition"), std::string::npos);
-  }
+  const auto error = Caught<base::InputError>([&] { MergeStage(pipeline); });
+  ASSERT_TRUE(error) << "nothing thrown";
+  EXPECT_EQ(error->file(), project_.BlocksFile());
+  EXPECT_NE(std::string(error->what()).find("skyquilt partition"), std::string::npos);
 }
 
 }  // namespace

@@ -8,10 +8,14 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/error_of.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::base {
 namespace {
+
+using ChildProcessTest = InTemporaryFolder;
+using RunLoggedTest = InTemporaryFolder;
 
 Command Shell(const std::string& script) {
   return {FindProgram("sh"), {"-c", script}};
@@ -24,30 +28,27 @@ bool HasEnded(const std::string& process) {
   return text.find(") Z") != std::string::npos || text.find(") X") != std::string::npos;
 }
 
-TEST(RunLogged, ReportsStatusLinesAndLog) {
-  const TemporaryFolder folder;
+TEST_F(RunLoggedTest, ReportsStatusLinesAndLog) {
   std::vector<std::string> lines;
   Command command = Shell("echo one; echo \"$SKYQUILT_X\" >&2; printf '\\n\\rthree'; exit 7");
   command.environment = {"SKYQUILT_X=two words"};
-  EXPECT_EQ(RunLogged(command, folder / "log", [&](const std::string& line) { lines.push_back(line); }), 7);
+  EXPECT_EQ(RunLogged(command, folder_ / "log", [&](const std::string& line) { lines.push_back(line); }), 7);
   EXPECT_EQ(lines, (std::vector<std::string>{"one", "two words", "three"}));
-  const std::string log = ReadFile(folder / "log");
+  const std::string log = ReadFile(folder_ / "log");
   EXPECT_NE(log.find("two words"), std::string::npos);
   EXPECT_NE(log.find("# exit status 7\n"), std::string::npos);
-  EXPECT_EQ(RunLogged(Shell("kill -9 $$"), folder / "log", {}), 128 + SIGKILL);
+  EXPECT_EQ(RunLogged(Shell("kill -9 $$"), folder_ / "log", {}), 128 + SIGKILL);
 }
 
-TEST(RunLogged, AFileThatCannotBeExecutedHasStatus127) {
-  const TemporaryFolder folder;
-  WriteFileAtomically(folder / "script", "#!/no/such/interpreter\n");
-  std::filesystem::permissions(folder / "script", std::filesystem::perms::owner_all);
-  EXPECT_EQ(RunLogged({FindProgram((folder / "script").string()), {}}, folder / "log", {}), 127);
+TEST_F(RunLoggedTest, AFileThatCannotBeExecutedHasStatus127) {
+  WriteFileAtomically(folder_ / "script", "#!/no/such/interpreter\n");
+  std::filesystem::permissions(folder_ / "script", std::filesystem::perms::owner_all);
+  EXPECT_EQ(RunLogged({FindProgram((folder_ / "script").string()), {}}, folder_ / "log", {}), 127);
 }
 
-TEST(RunLogged, CancellingEndsTheProgramAndItsChildren) {
-  const TemporaryFolder folder;
+TEST_F(RunLoggedTest, CancellingEndsTheProgramAndItsChildren) {
   std::string grandchild;
-  EXPECT_THROW(RunLogged(Shell("sleep 600 & echo $!; wait"), folder / "log",
+  EXPECT_THROW(RunLogged(Shell("sleep 600 & echo $!; wait"), folder_ / "log",
                          [&](const std::string& line) {
                            grandchild = line;
                            RequestCancel();
@@ -57,7 +58,7 @@ TEST(RunLogged, CancellingEndsTheProgramAndItsChildren) {
   bool ended = false;
   for (int i = 0; i < 100 && !ended; ++i) {
     ended = HasEnded(grandchild);
-    if (!ended) RunLogged(Shell("sleep 0.05"), folder / "log", {});
+    if (!ended) RunLogged(Shell("sleep 0.05"), folder_ / "log", {});
   }
   EXPECT_TRUE(ended);
 }
@@ -68,18 +69,17 @@ TEST(FindProgram, IsEmptyForMissingPrograms) {
   EXPECT_FALSE(FindProgram("sh").empty());
 }
 
-TEST(ChildProcess, ReadsWhatIsWrittenToIt) {
-  const TemporaryFolder folder;
+TEST_F(ChildProcessTest, ReadsWhatIsWrittenToIt) {
   // More than a socket's buffer.
   const std::vector<uint8_t> bytes(3'000'000, 'x');
-  ChildProcess child = ChildProcess::StartWriting(Shell("cat > '" + (folder / "copy").string() + "'"));
+  ChildProcess child = ChildProcess::StartWriting(Shell("cat > '" + (folder_ / "copy").string() + "'"));
   EXPECT_TRUE(child.Send(bytes));
   EXPECT_TRUE(child.Send(std::vector<uint8_t>{'y'}));
   EXPECT_EQ(child.Wait().Text("cat"), "");
-  EXPECT_EQ(ReadFile(folder / "copy"), std::string(bytes.size(), 'x') + "y");
+  EXPECT_EQ(ReadFile(folder_ / "copy"), std::string(bytes.size(), 'x') + "y");
 }
 
-TEST(ChildProcess, ReportsThatTheProgramEndedAndHow) {
+TEST_F(ChildProcessTest, ReportsThatTheProgramEndedAndHow) {
   const std::vector<uint8_t> bytes(3'000'000, 'x');
   ChildProcess failing = ChildProcess::StartWriting(Shell("exit 3"));
   EXPECT_FALSE(failing.Send(bytes));
@@ -89,7 +89,7 @@ TEST(ChildProcess, ReportsThatTheProgramEndedAndHow) {
   EXPECT_EQ(killed.Wait().Text("sh"), "sh was ended by signal 9");
 }
 
-TEST(ChildProcess, IsKilledByTheDestructor) {
+TEST_F(ChildProcessTest, IsKilledByTheDestructor) {
   std::string number;
   {
     ChildProcess child = ChildProcess::StartReading(Shell("echo $$; exec sleep 600"));
@@ -101,16 +101,12 @@ TEST(ChildProcess, IsKilledByTheDestructor) {
   EXPECT_TRUE(HasEnded(number));
 }
 
-TEST(ChildProcess, ReportsWhyAFileCannotBeExecuted) {
-  const TemporaryFolder folder;
-  WriteFileAtomically(folder / "text", "no program\n");
-  try {
-    ChildProcess::StartWriting({folder / "text", {}});
-    FAIL() << "no error";
-  } catch (const StartError& error) {
-    EXPECT_EQ(error.missing(), StartError::Missing::kProgram);
-    EXPECT_EQ(error.code(), EACCES);
-  }
+TEST_F(ChildProcessTest, ReportsWhyAFileCannotBeExecuted) {
+  WriteFileAtomically(folder_ / "text", "no program\n");
+  const auto error = Caught<StartError>([&] { ChildProcess::StartWriting({folder_ / "text", {}}); });
+  ASSERT_TRUE(error) << "no error";
+  EXPECT_EQ(error->missing(), StartError::Missing::kProgram);
+  EXPECT_EQ(error->code(), EACCES);
 }
 
 }  // namespace

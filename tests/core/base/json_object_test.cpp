@@ -16,12 +16,7 @@ namespace {
 using nlohmann::json;
 
 std::string RefusalOf(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const Refused& refused) {
-    return refused.what();
-  }
-  return "";
+  return ErrorOf<Refused>([&] { read(); });
 }
 
 TEST(JsonValue, NamesThePlaceInADocument) {

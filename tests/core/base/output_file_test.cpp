@@ -10,10 +10,13 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/error_of.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::base {
 namespace {
+
+using OutputFileTest = InTemporaryFolder;
 
 // Pieces of the sizes given, shorter and longer than the file's buffer.
 std::string AppendPieces(const std::vector<size_t>& sizes, OutputFile& file) {
@@ -28,61 +31,53 @@ std::string AppendPieces(const std::vector<size_t>& sizes, OutputFile& file) {
   return all;
 }
 
-TEST(OutputFile, PiecesAreReadBackInTheirOrder) {
-  const TemporaryFolder folder;
-  OutputFile file(folder / "made");
+TEST_F(OutputFileTest, PiecesAreReadBackInTheirOrder) {
+  OutputFile file(folder_ / "made");
   const std::string all = AppendPieces({0, 1, 1000, 1 << 20, 7, 3 << 20, (1 << 20) - 1, 2}, file);
   file.Complete();
   file.Publish();
-  EXPECT_TRUE(ReadFile(folder / "made") == all);
-  EXPECT_FALSE(std::filesystem::exists(folder / "made.partial"));
+  EXPECT_TRUE(ReadFile(folder_ / "made") == all);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "made.partial"));
 }
 
-TEST(OutputFile, AfterSyncAllPiecesSoFarAreInTheFile) {
-  const TemporaryFolder folder;
-  OutputFile file(folder / "made");
+TEST_F(OutputFileTest, AfterSyncAllPiecesSoFarAreInTheFile) {
+  OutputFile file(folder_ / "made");
   std::string all = AppendPieces({5, 100}, file);
   file.Sync();
-  EXPECT_EQ(ReadFile(folder / "made.partial"), all);
+  EXPECT_EQ(ReadFile(folder_ / "made.partial"), all);
   file.Append(std::string_view("end"));
   file.Complete();
   file.Publish();
-  EXPECT_EQ(ReadFile(folder / "made"), all + "end");
+  EXPECT_EQ(ReadFile(folder_ / "made"), all + "end");
 }
 
-TEST(OutputFile, HasItsNameOnlyWhenItIsPublished) {
-  const TemporaryFolder folder;
-  WriteFileAtomically(folder / "made", "old");
+TEST_F(OutputFileTest, HasItsNameOnlyWhenItIsPublished) {
+  WriteFileAtomically(folder_ / "made", "old");
   {
-    OutputFile file(folder / "made");
+    OutputFile file(folder_ / "made");
     AppendPieces({10}, file);
     file.Complete();
-    EXPECT_EQ(ReadFile(folder / "made"), "old");
+    EXPECT_EQ(ReadFile(folder_ / "made"), "old");
     EXPECT_THROW(file.Sync(), std::logic_error);
   }
   // Nobody published it.
-  EXPECT_EQ(ReadFile(folder / "made"), "old");
-  EXPECT_FALSE(std::filesystem::exists(folder / "made.partial"));
+  EXPECT_EQ(ReadFile(folder_ / "made"), "old");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "made.partial"));
 }
 
-TEST(OutputFile, AnUnfinishedFileOfAKilledRunIsReplaced) {
-  const TemporaryFolder folder;
-  WriteFileAtomically(folder / "made.partial", std::string(100, 'x'));
-  OutputFile file(folder / "made");
+TEST_F(OutputFileTest, AnUnfinishedFileOfAKilledRunIsReplaced) {
+  WriteFileAtomically(folder_ / "made.partial", std::string(100, 'x'));
+  OutputFile file(folder_ / "made");
   file.Append(std::string_view("new"));
   file.Complete();
   file.Publish();
-  EXPECT_EQ(ReadFile(folder / "made"), "new");
+  EXPECT_EQ(ReadFile(folder_ / "made"), "new");
 }
 
-TEST(OutputFile, AFolderThatIsMissingIsNamed) {
-  const TemporaryFolder folder;
-  try {
-    OutputFile file(folder / "nowhere/made");
-    FAIL() << "a file was made in a folder that does not exist";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.file(), folder / "nowhere/made");
-  }
+TEST_F(OutputFileTest, AFolderThatIsMissingIsNamed) {
+  const auto error = Caught<InputError>([&] { OutputFile file(folder_ / "nowhere/made"); });
+  ASSERT_TRUE(error) << "a file was made in a folder that does not exist";
+  EXPECT_EQ(error->file(), folder_ / "nowhere/made");
 }
 
 // A limit on the file size makes write() fail half-way, like a full disk.

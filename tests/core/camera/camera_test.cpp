@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/base/random.h"
 #include "core/camera/corner_radius.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <functional>
 #include <limits>
 
 #include "core/base/errors.h"
@@ -14,8 +13,8 @@
 #include "core/checkpoint/digest.h"
 #include "core/checkpoint/user_block.h"
 #include "tests/support/error_of.h"
+#include "tests/support/in_temporary_folder.h"
 #include "tests/support/sanitizer.h"
-#include "tests/support/temporary_folder.h"
 
 #ifdef SKYQUILT_ADDRESS_SANITIZER
 // HDF5 1.10 leaks memory when metadata is damaged.
@@ -26,6 +25,10 @@ extern "C" const char* __lsan_default_suppressions() {
 
 namespace skyquilt::checkpoint {
 namespace {
+
+using Archive = InTemporaryFolder;
+using ArchiveCopies = InTemporaryFolder;
+using ArchiveReaderTest = InTemporaryFolder;
 
 void WriteBytes(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
@@ -83,9 +86,8 @@ bool Holds(const ArchiveReader& reader, const Content& content) {
          reader.IntAttribute("small") == 5;
 }
 
-TEST(Archive, KeepsEveryBit) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "block.h5";
+TEST_F(Archive, KeepsEveryBit) {
+  const std::filesystem::path file = folder_.path() / "block.h5";
   for (const size_t n : {size_t{0}, size_t{1}, size_t{1000}, size_t{1500001}}) {  // none, one, some, several chunks with an incomplete last one
     const Content content(n);
     content.Writer().Commit(file);
@@ -95,11 +97,10 @@ TEST(Archive, KeepsEveryBit) {
   }
 }
 
-TEST(Archive, ListsItsContent) {
-  const TemporaryFolder folder;
+TEST_F(Archive, ListsItsContent) {
   const Content content;
-  content.Writer().Commit(folder.path() / "a.h5");
-  const ArchiveReader reader(folder.path() / "a.h5");
+  content.Writer().Commit(folder_.path() / "a.h5");
+  const ArchiveReader reader(folder_.path() / "a.h5");
   EXPECT_EQ(reader.Names(), (std::vector<std::string>{"none", "occupancy", "random", "table/level0", "table/moments/first"}));
   EXPECT_EQ(reader.AttributeNames(), (std::vector<std::string>{"config", "empty", "rate", "small", "step"}));
   EXPECT_EQ(reader.Shape("table/moments/first"), (std::vector<int64_t>{2, 3}));
@@ -112,36 +113,33 @@ TEST(Archive, ListsItsContent) {
   EXPECT_FALSE(reader.HasAttribute("skyquilt.kind"));
 }
 
-TEST(Archive, HoldsLongTextsAndManyAttributes) {
-  const TemporaryFolder folder;
+TEST_F(Archive, HoldsLongTextsAndManyAttributes) {
   ArchiveWriter writer("context", 1);
   const std::string text(300000, 'x');
   writer.SetAttribute("long", text);
   for (int i = 0; i < 200; ++i) writer.SetAttribute("attribute" + std::to_string(i), i);
-  writer.Commit(folder.path() / "a.h5");
-  const ArchiveReader reader(folder.path() / "a.h5");
+  writer.Commit(folder_.path() / "a.h5");
+  const ArchiveReader reader(folder_.path() / "a.h5");
   EXPECT_EQ(reader.StringAttribute("long"), text);
   EXPECT_EQ(reader.IntAttribute("attribute199"), 199);
 }
 
-TEST(Archive, SameContentGivesTheSameBytes) {
-  const TemporaryFolder folder;
-  Content().Writer().Commit(folder.path() / "a.h5");
-  Content().Writer().Commit(folder.path() / "b.h5");
-  EXPECT_EQ(base::ReadFile(folder.path() / "a.h5"), base::ReadFile(folder.path() / "b.h5"));
+TEST_F(Archive, SameContentGivesTheSameBytes) {
+  Content().Writer().Commit(folder_.path() / "a.h5");
+  Content().Writer().Commit(folder_.path() / "b.h5");
+  EXPECT_EQ(base::ReadFile(folder_.path() / "a.h5"), base::ReadFile(folder_.path() / "b.h5"));
 }
 
-TEST(Archive, RefusesNamesThatAreAbsentOrOfAnotherType) {
-  const TemporaryFolder folder;
-  Content().Writer().Commit(folder.path() / "a.h5");
-  const ArchiveReader reader(folder.path() / "a.h5");
+TEST_F(Archive, RefusesNamesThatAreAbsentOrOfAnotherType) {
+  Content().Writer().Commit(folder_.path() / "a.h5");
+  const ArchiveReader reader(folder_.path() / "a.h5");
   EXPECT_NE(InputErrorOf([&] { reader.Floats("absent"); }).find("no array 'absent'"), std::string::npos);
   EXPECT_NE(InputErrorOf([&] { reader.Doubles("table/level0"); }).find("float32 where float64"), std::string::npos);
   EXPECT_NE(InputErrorOf([&] { reader.IntAttribute("absent"); }).find("no attribute"), std::string::npos);
   EXPECT_NE(InputErrorOf([&] { reader.IntAttribute("rate"); }).find("not as a whole number"), std::string::npos);
 }
 
-TEST(Archive, MisuseIsABug) {
+TEST_F(Archive, MisuseIsABug) {
   const std::vector<float> values(6);
   ArchiveWriter writer("block", 1);
   writer.Put("a/b", values);
@@ -155,24 +153,22 @@ TEST(Archive, MisuseIsABug) {
   EXPECT_THROW(writer.SetAttribute("skyquilt.kind", 1), std::logic_error);
 }
 
-TEST(ArchiveReader, NamesTheReasonWhyAFileIsNoArchive) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "a.h5";
+TEST_F(ArchiveReaderTest, NamesTheReasonWhyAFileIsNoArchive) {
+  const std::filesystem::path file = folder_.path() / "a.h5";
   const auto message = [&](const std::string& bytes) {
     WriteBytes(file, bytes);
     return InputErrorOf([&] { const ArchiveReader reader(file); });
   };
-  EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(folder.path() / "absent.h5"); }).find("does not exist"), std::string::npos);
-  EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(folder.path()); }).find("is not a file"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(folder_.path() / "absent.h5"); }).find("does not exist"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { const ArchiveReader reader(folder_.path()); }).find("is not a file"), std::string::npos);
   EXPECT_NE(message("").find("is not a Skyquilt archive"), std::string::npos);
   EXPECT_NE(message("some text").find("is not a Skyquilt archive"), std::string::npos);
   EXPECT_NE(message("\x89HDF\r\n\x1A\n and more").find("HDF5 file that Skyquilt did not write"), std::string::npos);
   EXPECT_NE(message("SKYQUILT ARCHIVE 2\n" + std::string(600, '\0')).find("newer Skyquilt"), std::string::npos);
 }
 
-TEST(ArchiveReader, NoticesEveryFlippedBit) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "a.h5";
+TEST_F(ArchiveReaderTest, NoticesEveryFlippedBit) {
+  const std::filesystem::path file = folder_.path() / "a.h5";
   const Content content;
   content.Writer().Commit(file);
   const std::string good = base::ReadFile(file);
@@ -187,9 +183,8 @@ TEST(ArchiveReader, NoticesEveryFlippedBit) {
   }
 }
 
-TEST(ArchiveReader, NoticesEveryTruncationAndAddition) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "a.h5";
+TEST_F(ArchiveReaderTest, NoticesEveryTruncationAndAddition) {
+  const std::filesystem::path file = folder_.path() / "a.h5";
   Content().Writer().Commit(file);
   const std::string good = base::ReadFile(file);
   base::Random random(2025);
@@ -203,9 +198,8 @@ TEST(ArchiveReader, NoticesEveryTruncationAndAddition) {
 }
 
 // Damage with a matching digest, as from a bug in a program: HDF5's checks and ours give an error or the right content, never a crash.
-TEST(ArchiveReader, SurvivesDamageBehindAValidDigest) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder.path() / "a.h5";
+TEST_F(ArchiveReaderTest, SurvivesDamageBehindAValidDigest) {
+  const std::filesystem::path file = folder_.path() / "a.h5";
   const Content content;
   content.Writer().Commit(file);
   const std::string good = base::ReadFile(file);
@@ -227,15 +221,14 @@ TEST(ArchiveReader, SurvivesDamageBehindAValidDigest) {
   EXPECT_GT(n_refused, 50);
 }
 
-TEST(ArchiveCopies, ArraysOfOtherFilesAreStoredLikeThoseInMemory) {
-  const TemporaryFolder folder;
+TEST_F(ArchiveCopies, ArraysOfOtherFilesAreStoredLikeThoseInMemory) {
   const Content content(300'000);
-  content.Writer().Commit(folder / "part.h5");
+  content.Writer().Commit(folder_ / "part.h5");
   const auto joined = [&](bool copied) {
     ArchiveWriter writer("scene", 1);
     writer.SetAttribute("parts", 1);
     for (const char* name : {"table/level0", "table/moments/first", "occupancy", "random", "none"}) {
-      if (copied) writer.PutCopy("0/" + std::string(name), folder / "part.h5", name);
+      if (copied) writer.PutCopy("0/" + std::string(name), folder_ / "part.h5", name);
     }
     if (!copied) {
       writer.Put("0/table/level0", content.table);
@@ -244,23 +237,22 @@ TEST(ArchiveCopies, ArraysOfOtherFilesAreStoredLikeThoseInMemory) {
       writer.Put("0/random", content.numbers);
       writer.Put("0/none", content.none);
     }
-    const std::filesystem::path file = folder / (copied ? "copied.h5" : "put.h5");
+    const std::filesystem::path file = folder_ / (copied ? "copied.h5" : "put.h5");
     writer.Commit(file);
     return base::ReadFile(file);
   };
   EXPECT_TRUE(joined(true) == joined(false));
 }
 
-TEST(ArchiveCopies, FloatsMayBeStoredIn16Bits) {
-  const TemporaryFolder folder;
+TEST_F(ArchiveCopies, FloatsMayBeStoredIn16Bits) {
   const Content content(300'000);
-  content.Writer().Commit(folder / "part.h5");
+  content.Writer().Commit(folder_ / "part.h5");
   uintmax_t bytes[3] = {};
   for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16, Precision::kFloat16}) {
     const auto which = static_cast<size_t>(precision);
-    const std::filesystem::path file = folder / ("short" + std::to_string(which) + ".h5");
+    const std::filesystem::path file = folder_ / ("short" + std::to_string(which) + ".h5");
     ArchiveWriter writer("scene", 1);
-    for (const char* name : {"table/level0", "table/moments/first", "occupancy", "none"}) writer.PutCopy(name, folder / "part.h5", name, precision);
+    for (const char* name : {"table/level0", "table/moments/first", "occupancy", "none"}) writer.PutCopy(name, folder_ / "part.h5", name, precision);
     writer.Commit(file);
     bytes[which] = std::filesystem::file_size(file);
     const ArchiveReader reader(file);
@@ -276,30 +268,29 @@ TEST(ArchiveCopies, FloatsMayBeStoredIn16Bits) {
     // A copy in another archive keeps them unchanged.
     ArchiveWriter again("scene", 1);
     again.PutCopy("t", file, "table/level0");
-    again.Commit(folder / "again.h5");
-    const std::vector<float> same = ArchiveReader(folder / "again.h5").Floats("t");
+    again.Commit(folder_ / "again.h5");
+    const std::vector<float> same = ArchiveReader(folder_ / "again.h5").Floats("t");
     EXPECT_EQ(std::memcmp(same.data(), table.data(), table.size() * sizeof(float)), 0);
   }
   EXPECT_LT(static_cast<double>(bytes[1]), 0.55 * static_cast<double>(bytes[0]));
   EXPECT_EQ(bytes[1], bytes[2]);
 }
 
-TEST(ArchiveCopies, KeepOnlyTheChosenGroups) {
-  const TemporaryFolder folder;
+TEST_F(ArchiveCopies, KeepOnlyTheChosenGroups) {
   base::Random random(3);
   std::vector<float> values(4 * 1001);
   for (float& value : values) value = random.Uniform() - 0.5F;
   ArchiveWriter part("block", 1);
   part.Put("grid", values);
-  part.Commit(folder / "part.h5");
+  part.Commit(folder_ / "part.h5");
   std::vector<uint8_t> keep(126, 0);
   for (const uint32_t group : {0U, 7U, 8U, 500U, 1000U}) keep[group / 8] = static_cast<uint8_t>(keep[group / 8] | 1U << group % 8);
   for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
     ArchiveWriter writer("scene", 1);
-    writer.PutPruned("grid", folder / "part.h5", "grid", keep, 4, precision);
-    writer.PutPruned("nothing", folder / "part.h5", "grid", std::vector<uint8_t>(126, 0), 4, precision);
-    writer.Commit(folder / "kept.h5");
-    const ArchiveReader reader(folder / "kept.h5");
+    writer.PutPruned("grid", folder_ / "part.h5", "grid", keep, 4, precision);
+    writer.PutPruned("nothing", folder_ / "part.h5", "grid", std::vector<uint8_t>(126, 0), 4, precision);
+    writer.Commit(folder_ / "kept.h5");
+    const ArchiveReader reader(folder_ / "kept.h5");
     EXPECT_EQ(reader.Shape("grid"), std::vector<int64_t>{20});
     const std::vector<float> back = reader.PrunedFloats("grid");
     ASSERT_EQ(back.size(), values.size());
@@ -310,22 +301,21 @@ TEST(ArchiveCopies, KeepOnlyTheChosenGroups) {
     EXPECT_EQ(reader.PrunedFloats("nothing"), std::vector<float>(values.size(), 0.0F));
   }
   // Arrays stored whole are read whole.
-  EXPECT_EQ(ArchiveReader(folder / "part.h5").PrunedFloats("grid"), values);
+  EXPECT_EQ(ArchiveReader(folder_ / "part.h5").PrunedFloats("grid"), values);
   ArchiveWriter writer("scene", 1);
-  EXPECT_THROW(writer.PutPruned("a", folder / "part.h5", "grid", keep, 3), std::logic_error);
-  EXPECT_THROW(writer.PutPruned("a", folder / "part.h5", "grid", {1}, 4), std::logic_error);
-  EXPECT_THROW(writer.PutPruned("a", folder / "part.h5", "absent", keep, 4), base::InputError);
+  EXPECT_THROW(writer.PutPruned("a", folder_ / "part.h5", "grid", keep, 3), std::logic_error);
+  EXPECT_THROW(writer.PutPruned("a", folder_ / "part.h5", "grid", {1}, 4), std::logic_error);
+  EXPECT_THROW(writer.PutPruned("a", folder_ / "part.h5", "absent", keep, 4), base::InputError);
 }
 
-TEST(ArchiveCopies, BitsThatDoNotMatchTheStoredGroupsAreRefused) {
-  const TemporaryFolder folder;
+TEST_F(ArchiveCopies, BitsThatDoNotMatchTheStoredGroupsAreRefused) {
   const auto refused = [&](const std::vector<float>& kept, const std::vector<uint8_t>& bits, const std::vector<int64_t>& sizes) {
     ArchiveWriter writer("scene", 1);
     writer.Put("grid", kept);
     writer.Put("grid_keep", bits);
     writer.Put("grid_keep_sizes", sizes);
-    writer.Commit(folder / "foreign.h5");
-    EXPECT_THROW(ArchiveReader(folder / "foreign.h5").PrunedFloats("grid"), base::InputError);
+    writer.Commit(folder_ / "foreign.h5");
+    EXPECT_THROW(ArchiveReader(folder_ / "foreign.h5").PrunedFloats("grid"), base::InputError);
   };
   refused({1, 2, 3, 4}, {3}, {4, 32});
   refused({1, 2, 3, 4}, {1}, {4, 64});
@@ -335,22 +325,21 @@ TEST(ArchiveCopies, BitsThatDoNotMatchTheStoredGroupsAreRefused) {
   refused({1, 2, 3, 4}, {1}, {4});
 }
 
-TEST(ArchiveCopies, NamesMissingFilesAndArrays) {
-  const TemporaryFolder folder;
-  Content(10).Writer().Commit(folder / "part.h5");
+TEST_F(ArchiveCopies, NamesMissingFilesAndArrays) {
+  Content(10).Writer().Commit(folder_ / "part.h5");
   ArchiveWriter writer("scene", 1);
-  EXPECT_THROW(writer.PutCopy("a", folder / "absent.h5", "random"), base::InputError);
-  EXPECT_THROW(writer.PutCopy("a", folder / "part.h5", "absent"), base::InputError);
+  EXPECT_THROW(writer.PutCopy("a", folder_ / "absent.h5", "random"), base::InputError);
+  EXPECT_THROW(writer.PutCopy("a", folder_ / "part.h5", "absent"), base::InputError);
   // The source file is removed before Commit: nothing is written.
-  writer.PutCopy("a", folder / "part.h5", "random");
-  writer.PutCopy("b", folder / "part.h5", "occupancy");
+  writer.PutCopy("a", folder_ / "part.h5", "random");
+  writer.PutCopy("b", folder_ / "part.h5", "occupancy");
   ArchiveWriter other("scene", 1);
-  Content(10).Writer().Commit(folder / "second.h5");
-  other.PutCopy("a", folder / "part.h5", "random");
-  other.PutCopy("b", folder / "second.h5", "random");
-  std::filesystem::remove(folder / "part.h5");
-  EXPECT_THROW(other.Commit(folder / "joined.h5"), base::InputError);
-  EXPECT_FALSE(std::filesystem::exists(folder / "joined.h5"));
+  Content(10).Writer().Commit(folder_ / "second.h5");
+  other.PutCopy("a", folder_ / "part.h5", "random");
+  other.PutCopy("b", folder_ / "second.h5", "random");
+  std::filesystem::remove(folder_ / "part.h5");
+  EXPECT_THROW(other.Commit(folder_ / "joined.h5"), base::InputError);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "joined.h5"));
 }
 
 }  // namespace

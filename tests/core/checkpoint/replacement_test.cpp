@@ -1,6 +1,5 @@
 // Replacing an archive by a new one: at any moment, even after a kill or with a full disk, a complete file exists.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
 #include <thread>
 
 #include "core/base/errors.h"
@@ -17,6 +15,7 @@
 #include "core/base/system.h"
 #include "core/checkpoint/archive.h"
 #include "tests/support/error_of.h"
+#include "tests/support/limited_file_size.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::checkpoint {
@@ -115,10 +114,6 @@ TEST_F(Replacement, AFullDiskAtAnyByteKeepsTheOldFile) {
   Commit(file_, 1);
   const pid_t child = fork();
   if (child == 0) {
-    // A limit on the file size makes writes fail like a full disk.
-    std::signal(SIGXFSZ, SIG_IGN);
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
     Commit(folder_.path() / "whole.h5", 2, 1000000);
     const auto n_whole = static_cast<rlim_t>(std::filesystem::file_size(folder_.path() / "whole.h5"));
     std::filesystem::remove(folder_.path() / "whole.h5");
@@ -130,11 +125,10 @@ TEST_F(Replacement, AFullDiskAtAnyByteKeepsTheOldFile) {
     }
     int status = 0;
     for (const rlim_t limit : limits) {
-      rlimit small = before;
-      small.rlim_cur = limit;
-      setrlimit(RLIMIT_FSIZE, &small);
-      const std::string message = InputErrorOf([&] { Commit(file_, 2, 1000000); });
-      setrlimit(RLIMIT_FSIZE, &before);
+      const std::string message = InputErrorOf([&] {
+        const LimitedFileSize small(limit);
+        Commit(file_, 2, 1000000);
+      });
       if (message.find("block.h5") == std::string::npos || StepOf(file_) != 1 || FilesInFolder() != 1) {
         std::fprintf(stderr, "limit %lu of %lu: '%s'\n", static_cast<unsigned long>(limit), static_cast<unsigned long>(n_whole), message.c_str());
         status = 1;

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "core/base/random.h"
 #include "core/kernel/reference.h"
 

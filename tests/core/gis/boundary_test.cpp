@@ -5,40 +5,22 @@
 #include <ogrsf_frmts.h>
 #include <rapidcheck/gtest.h>
 
-#include <cmath>
 #include <limits>
-#include <memory>
 #include <string>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "tests/core/gis/made_rings.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::gis {
 namespace {
 
-using Rings = std::vector<std::vector<Eigen::Vector2d>>;
-const geo::UtmZone kZone = {31, true};
 
 // 100 x 80 m with a hole of 20 x 20 m, easting and northing.
 const Rings kYard = {{{430000, 4580000}, {430100, 4580000}, {430100, 4580080}, {430000, 4580080}},
                      {{430040, 4580030}, {430060, 4580030}, {430060, 4580050}, {430040, 4580050}}};
-
-std::string LonLat(const Rings& rings) {
-  std::string text;
-  for (const auto& ring : rings) {
-    text += text.empty() ? "[" : ",[";
-    for (size_t i = 0; i <= ring.size(); ++i) {
-      const geo::Geodetic place = geo::GeodeticFromUtm(ring[i % ring.size()], 0.0, kZone);
-      char point[80];
-      std::snprintf(point, sizeof(point), "%s[%.12f,%.12f]", i == 0 ? "" : ",", place.longitude_deg, place.latitude_deg);
-      text += point;
-    }
-    text += "]";
-  }
-  return "[" + text + "]";
-}
 
 std::string Feature(const std::string& type, const std::string& coordinates) {
   return R"({"type":"Feature","properties":{},"geometry":{"type":")" + type + R"(","coordinates":)" + coordinates + "}}";
@@ -82,10 +64,10 @@ void ExpectYard(const Boundary& boundary) {
 
 TEST(Boundary, GeoJsonAndGeoPackageAgree) {
   const TemporaryFolder folder;
-  base::WriteFileAtomically(folder / "yard.geojson", Collection(Feature("Polygon", LonLat(kYard))));
+  base::WriteFileAtomically(folder / "yard.geojson", Collection(Feature("Polygon", InDegrees(kYard))));
   WritePackage(folder / "yard.gpkg", {kYard}, 32631);
-  const Boundary json = Boundary::Read(folder / "yard.geojson", true, kZone);
-  const Boundary package = Boundary::Read(folder / "yard.gpkg", true, kZone);
+  const Boundary json = Boundary::Read(folder / "yard.geojson", true, kMade31N);
+  const Boundary package = Boundary::Read(folder / "yard.gpkg", true, kMade31N);
   ExpectYard(json);
   ExpectYard(package);
   EXPECT_EQ(json.rings().size(), 2U);
@@ -107,7 +89,7 @@ TEST(Boundary, AxesOfLatitudeFirstSystemsAreRight) {
   }
   OCTDestroyCoordinateTransformation(to_laea);
   WritePackage(folder / "yard.gpkg", {moved}, 3035);
-  ExpectYard(Boundary::Read(folder / "yard.gpkg", true, kZone));
+  ExpectYard(Boundary::Read(folder / "yard.gpkg", true, kMade31N));
 }
 
 TEST(Boundary, OverlappingPolygonsDoNotCancel) {
@@ -115,7 +97,7 @@ TEST(Boundary, OverlappingPolygonsDoNotCancel) {
   const Rings west = {{{0, 0}, {60, 0}, {60, 50}, {0, 50}}};
   const Rings east = {{{40, 0}, {100, 0}, {100, 50}, {40, 50}}};
   WritePackage(folder / "two.gpkg", {west, east}, 32631);
-  const Boundary boundary = Boundary::Read(folder / "two.gpkg", true, kZone);
+  const Boundary boundary = Boundary::Read(folder / "two.gpkg", true, kMade31N);
   EXPECT_TRUE(boundary.Contains({50.0, 25.0}));
   EXPECT_TRUE(boundary.Contains({10.0, 25.0}));
   EXPECT_TRUE(boundary.Contains({90.0, 25.0}));
@@ -125,8 +107,8 @@ TEST(Boundary, MultiPolygonsAndCollectionsAreRead) {
   const TemporaryFolder folder;
   const Rings island = {{{430200, 4580000}, {430210, 4580000}, {430210, 4580010}}};
   base::WriteFileAtomically(folder / "multi.json", Collection(Feature("Point", "[2.1,41.3]") + "," +
-                                                              Feature("MultiPolygon", "[" + LonLat(kYard) + "," + LonLat(island) + "]")));
-  const Boundary boundary = Boundary::Read(folder / "multi.json", true, kZone);
+                                                              Feature("MultiPolygon", "[" + InDegrees(kYard) + "," + InDegrees(island) + "]")));
+  const Boundary boundary = Boundary::Read(folder / "multi.json", true, kMade31N);
   EXPECT_TRUE(boundary.Contains({430010.0, 4580010.0}));
   EXPECT_FALSE(boundary.Contains({430050.0, 4580040.0}));
   EXPECT_TRUE(boundary.Contains({430208.0, 4580004.0}));
@@ -140,13 +122,13 @@ TEST(Boundary, LocalMetresAreTakenAsTheyAre) {
   const Boundary boundary = Boundary::Read(folder / "local.geojson", false, {});
   EXPECT_TRUE(boundary.Contains({699.0, 899.0}));
   EXPECT_FALSE(boundary.Contains({701.0, 0.0}));
-  const std::string error = InputErrorOf([&] { Boundary::Read(folder / "local.geojson", true, kZone); });
+  const std::string error = InputErrorOf([&] { Boundary::Read(folder / "local.geojson", true, kMade31N); });
   EXPECT_NE(error.find("no longitude and latitude"), std::string::npos) << error;
 }
 
 TEST(Boundary, SaysWhatIsWrong) {
   const TemporaryFolder folder;
-  const auto error_of = [&](const std::string& name) { return InputErrorOf([&] { Boundary::Read(folder / name, true, kZone); }); };
+  const auto error_of = [&](const std::string& name) { return InputErrorOf([&] { Boundary::Read(folder / name, true, kMade31N); }); };
   EXPECT_NE(error_of("none.geojson").find("none.geojson: does not exist"), std::string::npos);
   base::WriteFileAtomically(folder / "text.geojson", "hello");
   EXPECT_NE(error_of("text.geojson").find("cannot be read as GeoJSON or GeoPackage"), std::string::npos);

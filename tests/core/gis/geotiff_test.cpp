@@ -7,16 +7,17 @@
 #include <cmath>
 #include <string>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "tests/core/gis/limited_file_size.h"
 #include "tests/core/gis/open_dataset.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
+#include "tests/support/limited_file_size.h"
 
 namespace skyquilt::gis {
 namespace {
+
+using GeoTiff = InTemporaryFolder;
 
 constexpr float kNoData = -9999.0F;
 
@@ -84,16 +85,15 @@ TEST(ReadReduced, KeepsTheHighestOfEachPixel) {
   }
 }
 
-TEST(GeoTiff, IsCloudOptimisedAndComplete) {
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder / "map.tif";
+TEST_F(GeoTiff, IsCloudOptimisedAndComplete) {
+  const std::filesystem::path file = folder_ / "map.tif";
   {
     GeoTiffWriter writer(file, HeightSpec(1100, 700));
     WriteHeights(&writer, 1100, 700);
     EXPECT_FALSE(std::filesystem::exists(file));
     writer.Close();
   }
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) EXPECT_EQ(entry.path(), file);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) EXPECT_EQ(entry.path(), file);
   const OpenedDataset map = OpenDataset(file, GDAL_OF_RASTER);
   ASSERT_NE(map, nullptr);
   EXPECT_EQ(Item(map.get(), "LAYOUT", "IMAGE_STRUCTURE"), "COG");
@@ -132,27 +132,25 @@ TEST(GeoTiff, IsCloudOptimisedAndComplete) {
   for (const float value : overview) EXPECT_TRUE(value == kNoData || value > 50.0F) << value;
 }
 
-TEST(GeoTiff, TheSameRowsGiveTheSameBytes) {
-  const TemporaryFolder folder;
+TEST_F(GeoTiff, TheSameRowsGiveTheSameBytes) {
   for (const char* name : {"a.tif", "b.tif"}) {
-    GeoTiffWriter writer(folder / name, HeightSpec(1500, 600));
+    GeoTiffWriter writer(folder_ / name, HeightSpec(1500, 600));
     WriteHeights(&writer, 1500, 600);
     writer.Close();
   }
-  EXPECT_TRUE(base::ReadFile(folder / "a.tif") == base::ReadFile(folder / "b.tif"));
+  EXPECT_TRUE(base::ReadFile(folder_ / "a.tif") == base::ReadFile(folder_ / "b.tif"));
 }
 
-TEST(GeoTiff, OneCellAndFourBands) {
-  const TemporaryFolder folder;
+TEST_F(GeoTiff, OneCellAndFourBands) {
   GeoTiffSpec spec;
   spec.grid = Grid(1, 1);
   spec.grid.georeferenced = false;
   spec.bands = 4;
-  GeoTiffWriter writer(folder / "one.tif", spec);
+  GeoTiffWriter writer(folder_ / "one.tif", spec);
   const std::vector<uint8_t> rgba = {10, 20, 30, 255};
   writer.WriteRows(0, 1, std::span<const uint8_t>(rgba));
   writer.Close();
-  const OpenedDataset map = OpenDataset(folder / "one.tif", GDAL_OF_RASTER);
+  const OpenedDataset map = OpenDataset(folder_ / "one.tif", GDAL_OF_RASTER);
   ASSERT_NE(map, nullptr);
   EXPECT_EQ(map->GetRasterBand(1)->GetColorInterpretation(), GCI_RedBand);
   EXPECT_EQ(map->GetRasterBand(4)->GetColorInterpretation(), GCI_AlphaBand);
@@ -162,37 +160,33 @@ TEST(GeoTiff, OneCellAndFourBands) {
   EXPECT_EQ(read, rgba);
 }
 
-TEST(GeoTiff, FailuresLeaveNothingBehind) {
-  const TemporaryFolder folder;
-  const std::string missing = InputErrorOf([&] { GeoTiffWriter(folder / "no_such_folder/map.tif", HeightSpec(10, 10)); });
+TEST_F(GeoTiff, FailuresLeaveNothingBehind) {
+  const std::string missing = InputErrorOf([&] { GeoTiffWriter(folder_ / "no_such_folder/map.tif", HeightSpec(10, 10)); });
   EXPECT_NE(missing.find("map.tif: cannot be created"), std::string::npos) << missing;
   const auto write = [&] {
-    GeoTiffWriter writer(folder / "map.tif", HeightSpec(1100, 700));
+    GeoTiffWriter writer(folder_ / "map.tif", HeightSpec(1100, 700));
     WriteHeights(&writer, 1100, 700);
     writer.Close();
   };
   write();
-  const auto size = std::filesystem::file_size(folder / "map.tif");
-  std::filesystem::remove(folder / "map.tif");
+  const auto size = std::filesystem::file_size(folder_ / "map.tif");
+  std::filesystem::remove(folder_ / "map.tif");
   // The first limit stops the plain file, the others the copy, which is larger by its overviews; the last one at its last block.
   for (const rlim_t limit : {rlim_t{20000}, size / 100 * 90, size / 100 * 97, size - 100}) {
     const LimitedFileSize full(limit);
     const std::string error = InputErrorOf(write);
     EXPECT_NE(error.find("Check the free space"), std::string::npos) << limit << " of " << size << ": " << error;
   }
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
-TEST(GeoTiff, CancellingLeavesNothingBehind) {
-  const TemporaryFolder folder;
+TEST_F(GeoTiff, CancellingLeavesNothingBehind) {
   {
-    GeoTiffWriter writer(folder / "map.tif", HeightSpec(1100, 700));
+    GeoTiffWriter writer(folder_ / "map.tif", HeightSpec(1100, 700));
     WriteHeights(&writer, 1100, 700);
-    base::RequestCancel();
-    EXPECT_THROW(writer.Close(), base::Interrupted);
-    base::ClearCancel();
+    ExpectStopsWhenAsked([&] { writer.Close(); });
   }
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
 }  // namespace

@@ -11,10 +11,12 @@
 #include "core/gis/vector_layers.h"
 #include "core/gis/zone_wkt.h"
 #include "tests/core/gis/open_dataset.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::gis {
 namespace {
+
+using MapsWithHeights = InTemporaryFolder;
 
 using geo::HeightReference;
 
@@ -36,18 +38,17 @@ void WriteMap(const geo::UtmZone& zone, HeightReference heights, const std::map<
   writer.Close();
 }
 
-TEST(MapsWithHeights, NameTheirVerticalSystem) {
-  const TemporaryFolder folder;
+TEST_F(MapsWithHeights, NameTheirVerticalSystem) {
   for (const geo::UtmZone& zone : kZones) {
     const std::string code = std::to_string(zone.Epsg());
-    WriteMap(zone, HeightReference::kEllipsoid, {}, folder / "ellipsoid.tif");
-    const OpenedDataset ellipsoid = OpenDataset(folder / "ellipsoid.tif", GDAL_OF_RASTER);
+    WriteMap(zone, HeightReference::kEllipsoid, {}, folder_ / "ellipsoid.tif");
+    const OpenedDataset ellipsoid = OpenDataset(folder_ / "ellipsoid.tif", GDAL_OF_RASTER);
     const OGRSpatialReference* crs = ellipsoid->GetSpatialRef();
     ASSERT_NE(crs, nullptr);
     EXPECT_STREQ(crs->GetAuthorityCode(nullptr), code.c_str());
 
-    WriteMap(zone, HeightReference::kEgm96, {}, folder / "egm96.tif");
-    const OpenedDataset egm96 = OpenDataset(folder / "egm96.tif", GDAL_OF_RASTER);
+    WriteMap(zone, HeightReference::kEgm96, {}, folder_ / "egm96.tif");
+    const OpenedDataset egm96 = OpenDataset(folder_ / "egm96.tif", GDAL_OF_RASTER);
     crs = egm96->GetSpatialRef();
     ASSERT_NE(crs, nullptr);
     EXPECT_TRUE(crs->IsCompound()) << code;
@@ -55,24 +56,23 @@ TEST(MapsWithHeights, NameTheirVerticalSystem) {
     EXPECT_STREQ(crs->GetAuthorityCode("VERT_CS"), "5773") << code;
     EXPECT_STREQ(crs->GetAttrValue("VERT_CS"), "EGM96 height") << code;
 
-    WriteMap(zone, HeightReference::kUnknown, {}, folder / "unknown.tif");
-    const OpenedDataset unknown = OpenDataset(folder / "unknown.tif", GDAL_OF_RASTER);
+    WriteMap(zone, HeightReference::kUnknown, {}, folder_ / "unknown.tif");
+    const OpenedDataset unknown = OpenDataset(folder_ / "unknown.tif", GDAL_OF_RASTER);
     EXPECT_EQ(unknown->GetSpatialRef()->GetAxesCount(), 2) << code;
     EXPECT_STREQ(unknown->GetSpatialRef()->GetAuthorityCode(nullptr), code.c_str());
 
     // The CRS is in the file itself.
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 3);
     // This program finds the zone again in all of them.
     for (const char* name : {"ellipsoid.tif", "egm96.tif", "unknown.tif"}) {
-      EXPECT_EQ(ReadMapGrid(folder / name).zone.Epsg(), zone.Epsg()) << name;
-      EXPECT_EQ(ReadUndulations(folder / name), 0);
+      EXPECT_EQ(ReadMapGrid(folder_ / name).zone.Epsg(), zone.Epsg()) << name;
+      EXPECT_EQ(ReadUndulations(folder_ / name), 0);
     }
   }
 }
 
 // Another program that follows the CRS comes to the place that was meant.
-TEST(MapsWithHeights, LeadToTheirPlaceInOtherPrograms) {
-  const TemporaryFolder folder;
+TEST_F(MapsWithHeights, LeadToTheirPlaceInOtherPrograms) {
   const geo::UtmZone zone{30, true};
   const Eigen::Vector2d at = geo::UtmFromGeodetic({52.0, -1.5, 0.0}, zone);
   OGRSpatialReference wgs84;
@@ -83,8 +83,8 @@ TEST(MapsWithHeights, LeadToTheirPlaceInOtherPrograms) {
     double height_m;
   } cases[] = {{HeightReference::kEllipsoid, 100.0}, {HeightReference::kEgm96, 51.589}};
   for (const auto& one : cases) {
-    WriteMap(zone, one.heights, {}, folder / "map.tif");
-    const OpenedDataset map = OpenDataset(folder / "map.tif", GDAL_OF_RASTER);
+    WriteMap(zone, one.heights, {}, folder_ / "map.tif");
+    const OpenedDataset map = OpenDataset(folder_ / "map.tif", GDAL_OF_RASTER);
     OGRSpatialReference from(*map->GetSpatialRef());
     from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     OGRCoordinateTransformation* to_wgs84 = OGRCreateCoordinateTransformation(&from, &wgs84);
@@ -98,19 +98,18 @@ TEST(MapsWithHeights, LeadToTheirPlaceInOtherPrograms) {
   }
 }
 
-TEST(MapsWithHeights, SayHowTheyWereConverted) {
-  const TemporaryFolder folder;
+TEST_F(MapsWithHeights, SayHowTheyWereConverted) {
   for (const int undulations : {-1, 1}) {
     const std::map<std::string, std::string> metadata = {{geo::kUndulationsItem, std::to_string(undulations)}};
-    WriteMap({30, true}, HeightReference::kEgm96, metadata, folder / "map.tif");
-    EXPECT_EQ(ReadUndulations(folder / "map.tif"), undulations);
+    WriteMap({30, true}, HeightReference::kEgm96, metadata, folder_ / "map.tif");
+    EXPECT_EQ(ReadUndulations(folder_ / "map.tif"), undulations);
     std::vector<float> slope;
     for (int cell = 0; cell < 1200; ++cell) slope.push_back(static_cast<float>(0.1 * (cell % 40)));
-    WriteContours(GridIn({30, true}), slope, 1.0, "EGM96", folder / "contours.gpkg", metadata);
-    EXPECT_EQ(ReadContours(folder / "contours.gpkg", 1000).undulations, undulations);
+    WriteContours(GridIn({30, true}), slope, 1.0, "EGM96", folder_ / "contours.gpkg", metadata);
+    EXPECT_EQ(ReadContours(folder_ / "contours.gpkg", 1000).undulations, undulations);
   }
-  WriteMap({30, true}, HeightReference::kEgm96, {{geo::kUndulationsItem, "2"}}, folder / "damaged.tif");
-  EXPECT_THROW(ReadUndulations(folder / "damaged.tif"), base::InputError);
+  WriteMap({30, true}, HeightReference::kEgm96, {{geo::kUndulationsItem, "2"}}, folder_ / "damaged.tif");
+  EXPECT_THROW(ReadUndulations(folder_ / "damaged.tif"), base::InputError);
 }
 
 TEST(WktOfZone, NamesWhatHeightsAreAbove) {

@@ -10,10 +10,12 @@
 #include "core/gis/contours.h"
 #include "core/gis/geotiff.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::gis {
 namespace {
+
+using ReadMaps = InTemporaryFolder;
 
 constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 
@@ -33,12 +35,11 @@ void WriteColumns(const MapGrid& grid, const std::filesystem::path& file) {
   writer.Close();
 }
 
-TEST(ReadMaps, FindsPlaceAndZone) {
-  const TemporaryFolder folder;
+TEST_F(ReadMaps, FindsPlaceAndZone) {
   for (const geo::UtmZone& zone : {geo::UtmZone{32, true}, geo::UtmZone{17, false}, geo::UtmZone{0, true}, geo::UtmZone{0, false}}) {
     const MapGrid grid = SmallGrid(true, zone);
-    WriteColumns(grid, folder / "map.tif");
-    const MapGrid read = ReadMapGrid(folder / "map.tif");
+    WriteColumns(grid, folder_ / "map.tif");
+    const MapGrid read = ReadMapGrid(folder_ / "map.tif");
     EXPECT_TRUE(read.georeferenced);
     EXPECT_EQ(read.zone.Epsg(), zone.Epsg());
     EXPECT_EQ(read.left, grid.left);
@@ -47,48 +48,46 @@ TEST(ReadMaps, FindsPlaceAndZone) {
     EXPECT_EQ(read.width, grid.width);
     EXPECT_EQ(read.height, grid.height);
   }
-  WriteColumns(SmallGrid(false, {}), folder / "local.tif");
-  EXPECT_FALSE(ReadMapGrid(folder / "local.tif").georeferenced);
-  base::WriteFileAtomically(folder / "bad.tif", "II*");
-  EXPECT_NE(InputErrorOf([&] { ReadMapGrid(folder / "bad.tif"); }), "");
-  EXPECT_NE(InputErrorOf([&] { ReadMapGrid(folder / "none.tif"); }).find("does not exist"), std::string::npos);
+  WriteColumns(SmallGrid(false, {}), folder_ / "local.tif");
+  EXPECT_FALSE(ReadMapGrid(folder_ / "local.tif").georeferenced);
+  base::WriteFileAtomically(folder_ / "bad.tif", "II*");
+  EXPECT_NE(InputErrorOf([&] { ReadMapGrid(folder_ / "bad.tif"); }), "");
+  EXPECT_NE(InputErrorOf([&] { ReadMapGrid(folder_ / "none.tif"); }).find("does not exist"), std::string::npos);
 }
 
-TEST(ReadMaps, APartIsWhereItWasAskedFor) {
-  const TemporaryFolder folder;
+TEST_F(ReadMaps, APartIsWhereItWasAskedFor) {
   const MapGrid grid = SmallGrid(true, {32, true});
-  WriteColumns(grid, folder / "map.tif");
+  WriteColumns(grid, folder_ / "map.tif");
   const auto at_columns = [&](double from, double to) {
     return Eigen::AlignedBox2d(Eigen::Vector2d(grid.left + 0.5 * from, grid.top - 10.0), Eigen::Vector2d(grid.left + 0.5 * to, grid.top - 5.0));
   };
   // Pixel centres at columns 20.5, 24.5 ...: the mean of cells 19 to 22, 23 to 26 ... is 20.5, 24.5 ... minus the half from edge to centre.
-  const image::ImageF reduced = ReadMapPart(folder / "map.tif", at_columns(18.5, 38.5), 5, 3);
+  const image::ImageF reduced = ReadMapPart(folder_ / "map.tif", at_columns(18.5, 38.5), 5, 3);
   for (int x = 0; x < 5; ++x) EXPECT_NEAR(*reduced.At(x, 1), 18.5 + 4.0 * (x + 0.5) - 0.5, 0.3);
-  const image::ImageF same = ReadMapPart(folder / "map.tif", at_columns(18.5, 38.5), 20, 10);
+  const image::ImageF same = ReadMapPart(folder_ / "map.tif", at_columns(18.5, 38.5), 20, 10);
   for (int x = 0; x < 20; ++x) EXPECT_NEAR(*same.At(x, 5), 18.5 + (x + 0.5) - 0.5, 0.01);
   // Half of it beyond the eastern edge.
-  const image::ImageF outside = ReadMapPart(folder / "map.tif", at_columns(50.0, 70.0), 20, 10);
+  const image::ImageF outside = ReadMapPart(folder_ / "map.tif", at_columns(50.0, 70.0), 20, 10);
   EXPECT_NEAR(*outside.At(9, 5), 59.0, 0.01);
   EXPECT_TRUE(std::isnan(*outside.At(10, 5)));
   const Eigen::AlignedBox2d all(Eigen::Vector2d(grid.left, grid.top - 20.0), Eigen::Vector2d(grid.left + 30.0, grid.top));
-  const image::ImageF whole = ReadMapPart(folder / "map.tif", all, 60, 40);
+  const image::ImageF whole = ReadMapPart(folder_ / "map.tif", all, 60, 40);
   EXPECT_TRUE(std::isnan(*whole.At(30, 0))) << "no data";
   EXPECT_EQ(*whole.At(30, 39), 30.0F);
   const Eigen::AlignedBox2d far_off(Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(10.0, 10.0));
-  EXPECT_TRUE(std::isnan(*ReadMapPart(folder / "map.tif", far_off, 4, 4).At(2, 2)));
+  EXPECT_TRUE(std::isnan(*ReadMapPart(folder_ / "map.tif", far_off, 4, 4).At(2, 2)));
 }
 
-TEST(ReadMaps, ContoursComeBackAndAreThinnedWhenThereAreTooMany) {
-  const TemporaryFolder folder;
+TEST_F(ReadMaps, ContoursComeBackAndAreThinnedWhenThereAreTooMany) {
   for (const bool georeferenced : {true, false}) {
     const MapGrid grid = SmallGrid(georeferenced, {17, false});
     std::vector<float> heights;
     for (int row = 0; row < grid.height; ++row) {
       for (int column = 0; column < grid.width; ++column) heights.push_back(column == 59 ? kNoHeight : 0.3F + 0.2F * static_cast<float>(column));
     }
-    const int64_t lines = WriteContours(grid, heights, 1.0, "ellipsoid", folder / "contours.gpkg");
+    const int64_t lines = WriteContours(grid, heights, 1.0, "ellipsoid", folder_ / "contours.gpkg");
     ASSERT_GT(lines, 8);
-    const Contours all = ReadContours(folder / "contours.gpkg", 1'000'000);
+    const Contours all = ReadContours(folder_ / "contours.gpkg", 1'000'000);
     EXPECT_EQ(all.georeferenced, georeferenced);
     if (georeferenced) {
       EXPECT_EQ(all.zone.Epsg(), 32717);
@@ -99,13 +98,13 @@ TEST(ReadMaps, ContoursComeBackAndAreThinnedWhenThereAreTooMany) {
     EXPECT_NEAR(all.lines[2].map_xy[0].x(), grid.left + 0.5 * ((3.0 - 0.3) / 0.2 + 0.5), 1e-3);
     int64_t vertices = 0;
     for (const ContourLine& line : all.lines) vertices += static_cast<int64_t>(line.map_xy.size());
-    const Contours fewer = ReadContours(folder / "contours.gpkg", vertices - 1);
+    const Contours fewer = ReadContours(folder_ / "contours.gpkg", vertices - 1);
     EXPECT_TRUE(fewer.thinned);
     ASSERT_FALSE(fewer.lines.empty());
     for (const ContourLine& line : fewer.lines) EXPECT_TRUE(line.index) << line.height_m;
   }
-  base::WriteFileAtomically(folder / "bad.gpkg", "SQLite");
-  EXPECT_NE(InputErrorOf([&] { ReadContours(folder / "bad.gpkg", 10); }), "");
+  base::WriteFileAtomically(folder_ / "bad.gpkg", "SQLite");
+  EXPECT_NE(InputErrorOf([&] { ReadContours(folder_ / "bad.gpkg", 10); }), "");
 }
 
 }  // namespace

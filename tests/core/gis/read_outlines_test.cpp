@@ -12,35 +12,19 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/gis/vector_layers.h"
+#include "tests/core/gis/made_rings.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::gis {
 namespace {
 
-using Ring = std::vector<Eigen::Vector2d>;
-using Rings = std::vector<Ring>;
-const geo::UtmZone kPlace = {31, true};
+using ReadOutlinesTest = InTemporaryFolder;
 
 // The outer ring clockwise and the hole counter-clockwise, against the contract of the result.
 const Rings kHouse = {{{430000, 4580000}, {430000, 4580080}, {430100, 4580080}, {430100, 4580000}},
                       {{430040, 4580030}, {430060, 4580030}, {430060, 4580050}, {430040, 4580050}}};
 const Rings kShed = {{{430200, 4580000}, {430210, 4580000}, {430210, 4580010}}};
-
-std::string InDegrees(const Rings& rings) {
-  std::string text;
-  for (const Ring& ring : rings) {
-    text += text.empty() ? "[" : ",[";
-    for (size_t i = 0; i <= ring.size(); ++i) {
-      const geo::Geodetic place = geo::GeodeticFromUtm(ring[i % ring.size()], 0.0, kPlace);
-      char point[80];
-      std::snprintf(point, sizeof(point), "%s[%.12f,%.12f,7.5]", i == 0 ? "" : ",", place.longitude_deg, place.latitude_deg);
-      text += point;
-    }
-    text += "]";
-  }
-  return "[" + text + "]";
-}
 
 // head: members of the feature before its properties, for instance "\"id\":7,".
 std::string OneFeature(const std::string& head, const std::string& properties, const std::string& type, const std::string& coordinates) {
@@ -112,43 +96,40 @@ VectorLayer LayerOf(const Rings& rings, std::vector<LayerField> fields, std::vec
   return layer;
 }
 
-TEST(ReadOutlines, AllFormatsAgree) {
-  const TemporaryFolder folder;
-  base::WriteFileAtomically(folder / "houses.geojson", Features(OneFeature("", R"("id":"H7")", "Polygon", InDegrees(kHouse))));
-  WriteShapefile(folder / "houses.shp", kHouse, 32631, "ID", "H7");
+TEST_F(ReadOutlinesTest, AllFormatsAgree) {
+  base::WriteFileAtomically(folder_ / "houses.geojson", Features(OneFeature("", R"("id":"H7")", "Polygon", InDegrees(kHouse, ",7.5"))));
+  WriteShapefile(folder_ / "houses.shp", kHouse, 32631, "ID", "H7");
   const VectorLayer layer = LayerOf(kHouse, {{"id", FieldType::kText}}, {std::string("H7")});
-  WriteVectorLayers(std::span(&layer, 1), true, kPlace, folder / "houses.gpkg");
+  WriteVectorLayers(std::span(&layer, 1), true, kMade31N, folder_ / "houses.gpkg");
   for (const char* name : {"houses.geojson", "houses.shp", "houses.gpkg"}) {
-    const std::vector<Outline> outlines = ReadOutlines(folder / name, true, kPlace);
+    const std::vector<Outline> outlines = ReadOutlines(folder_ / name, true, kMade31N);
     ASSERT_EQ(outlines.size(), 1U) << name;
     ExpectHouse(outlines[0]);
     EXPECT_EQ(outlines[0].id, "H7") << name;
   }
   // In a zone beside the survey's.
-  const std::vector<Outline> beside = ReadOutlines(folder / "houses.gpkg", true, {32, true});
+  const std::vector<Outline> beside = ReadOutlines(folder_ / "houses.gpkg", true, {32, true});
   EXPECT_LT(beside[0].rings[0][0].x(), 0.0) << "west of zone 32";
 }
 
-TEST(ReadOutlines, MultipolygonsAreSplitAndKeepTheirId) {
-  const TemporaryFolder folder;
-  base::WriteFileAtomically(folder / "a.json",
+TEST_F(ReadOutlinesTest, MultipolygonsAreSplitAndKeepTheirId) {
+  base::WriteFileAtomically(folder_ / "a.json",
                             Features(OneFeature("", R"("a":1)", "Point", "[2.1,41.3]") + "," +
-                                     OneFeature("", R"("name":"two")", "MultiPolygon", "[" + InDegrees(kHouse) + "," + InDegrees(kShed) + "]") + "," +
-                                     OneFeature("", R"("name":null)", "Polygon", InDegrees(kShed))));
-  const std::vector<Outline> outlines = ReadOutlines(folder / "a.json", true, kPlace);
+                                     OneFeature("", R"("name":"two")", "MultiPolygon", "[" + InDegrees(kHouse, ",7.5") + "," + InDegrees(kShed, ",7.5") + "]") + "," +
+                                     OneFeature("", R"("name":null)", "Polygon", InDegrees(kShed, ",7.5"))));
+  const std::vector<Outline> outlines = ReadOutlines(folder_ / "a.json", true, kMade31N);
   EXPECT_EQ(IdsOf(outlines), (std::vector<std::string>{"two", "two", ""}));
   ExpectHouse(outlines[0]);
   EXPECT_EQ(outlines[1].rings.size(), 1U);
   EXPECT_NEAR(SignedArea(outlines[1].rings[0]), 50.0, 0.1);
 }
 
-TEST(ReadOutlines, FindTheIdentity) {
-  const TemporaryFolder folder;
+TEST_F(ReadOutlinesTest, FindTheIdentity) {
   const auto ids = [&](const std::string& features) {
-    base::WriteFileAtomically(folder / "a.geojson", Features(features));
-    return IdsOf(ReadOutlines(folder / "a.geojson", true, kPlace));
+    base::WriteFileAtomically(folder_ / "a.geojson", Features(features));
+    return IdsOf(ReadOutlines(folder_ / "a.geojson", true, kMade31N));
   };
-  const std::string shed = InDegrees(kShed);
+  const std::string shed = InDegrees(kShed, ",7.5");
   const auto feature = [&](const std::string& head, const std::string& properties) { return OneFeature(head, properties, "Polygon", shed); };
   EXPECT_EQ(ids(feature("", R"("name":"n","osm_id":12345678901,"fid":3,"id":4)")), std::vector<std::string>{"4"});
   EXPECT_EQ(ids(feature("", R"("name":"n","osm_id":12345678901)")), std::vector<std::string>{"12345678901"});
@@ -158,24 +139,22 @@ TEST(ReadOutlines, FindTheIdentity) {
   EXPECT_EQ(ids(feature(R"("id":17,)", "") + "," + feature(R"("id":4,)", "")), (std::vector<std::string>{"17", "4"}));
   EXPECT_EQ(ids(feature("", R"("height":3)")), std::vector<std::string>{""});
   const VectorLayer layer = LayerOf(kShed, {{"name", FieldType::kText}}, {std::monostate()});
-  WriteVectorLayers(std::span(&layer, 1), true, kPlace, folder / "a.gpkg");
-  EXPECT_EQ(IdsOf(ReadOutlines(folder / "a.gpkg", true, kPlace)), std::vector<std::string>{"1"}) << "GeoPackage numbers its rows";
+  WriteVectorLayers(std::span(&layer, 1), true, kMade31N, folder_ / "a.gpkg");
+  EXPECT_EQ(IdsOf(ReadOutlines(folder_ / "a.gpkg", true, kMade31N)), std::vector<std::string>{"1"}) << "GeoPackage numbers its rows";
 }
 
-TEST(ReadOutlines, TextsOfUnknownEncodingBecomeClean) {
-  const TemporaryFolder folder;
-  WriteShapefile(folder / "houses.shp", kShed, 32631, "name", "Caf\xE9");
-  std::filesystem::remove(folder / "houses.cpg");
-  const std::string id = ReadOutlines(folder / "houses.shp", true, kPlace)[0].id;
+TEST_F(ReadOutlinesTest, TextsOfUnknownEncodingBecomeClean) {
+  WriteShapefile(folder_ / "houses.shp", kShed, 32631, "name", "Caf\xE9");
+  std::filesystem::remove(folder_ / "houses.cpg");
+  const std::string id = ReadOutlines(folder_ / "houses.shp", true, kMade31N)[0].id;
   EXPECT_TRUE(id.starts_with("Caf")) << id;
   EXPECT_EQ(id.find('\xE9'), std::string::npos) << "a byte that is no UTF-8";
 }
 
-TEST(ReadOutlines, RepairsPolygonsThatCrossThemselves) {
-  const TemporaryFolder folder;
+TEST_F(ReadOutlinesTest, RepairsPolygonsThatCrossThemselves) {
   const Rings bow = {{{430000, 4580000}, {430010, 4580010}, {430010, 4580000}, {430000, 4580010}}};
-  base::WriteFileAtomically(folder / "a.geojson", Features(OneFeature("", R"("id":"bow")", "Polygon", InDegrees(bow))));
-  const std::vector<Outline> outlines = ReadOutlines(folder / "a.geojson", true, kPlace);
+  base::WriteFileAtomically(folder_ / "a.geojson", Features(OneFeature("", R"("id":"bow")", "Polygon", InDegrees(bow, ",7.5"))));
+  const std::vector<Outline> outlines = ReadOutlines(folder_ / "a.geojson", true, kMade31N);
   EXPECT_EQ(IdsOf(outlines), (std::vector<std::string>{"bow", "bow"}));
   for (const Outline& outline : outlines) {
     EXPECT_EQ(outline.rings[0].size(), 3U);
@@ -183,32 +162,30 @@ TEST(ReadOutlines, RepairsPolygonsThatCrossThemselves) {
   }
 }
 
-TEST(ReadOutlines, LocalMetresAreTakenAsTheyAre) {
-  const TemporaryFolder folder;
+TEST_F(ReadOutlinesTest, LocalMetresAreTakenAsTheyAre) {
   const std::string square = "[[[-500,-500],[700,-500],[700,-500],[700,900],[-500,900],[-500,-500]]]";
-  base::WriteFileAtomically(folder / "local.geojson", Features(OneFeature("", "", "Polygon", square)));
-  const std::vector<Outline> outlines = ReadOutlines(folder / "local.geojson", false, {});
+  base::WriteFileAtomically(folder_ / "local.geojson", Features(OneFeature("", "", "Polygon", square)));
+  const std::vector<Outline> outlines = ReadOutlines(folder_ / "local.geojson", false, {});
   ASSERT_EQ(outlines.size(), 1U);
   EXPECT_EQ(outlines[0].rings, (Rings{{{-500, -500}, {700, -500}, {700, 900}, {-500, 900}}}));
 }
 
-TEST(ReadOutlines, SaysWhatIsWrong) {
-  const TemporaryFolder folder;
-  const auto error_of = [&](const std::string& name) { return InputErrorOf([&] { ReadOutlines(folder / name, true, kPlace); }); };
+TEST_F(ReadOutlinesTest, SaysWhatIsWrong) {
+  const auto error_of = [&](const std::string& name) { return InputErrorOf([&] { ReadOutlines(folder_ / name, true, kMade31N); }); };
   EXPECT_NE(error_of("none.shp").find("none.shp: does not exist"), std::string::npos);
-  base::WriteFileAtomically(folder / "text.geojson", "hello");
+  base::WriteFileAtomically(folder_ / "text.geojson", "hello");
   EXPECT_NE(error_of("text.geojson").find("cannot be read as GeoJSON, GeoPackage or Shapefile"), std::string::npos);
-  base::WriteFileAtomically(folder / "line.geojson", Features(OneFeature("", "", "LineString", "[[2,41],[2.1,41],[2.1,41.1]]")));
+  base::WriteFileAtomically(folder_ / "line.geojson", Features(OneFeature("", "", "LineString", "[[2,41],[2.1,41],[2.1,41.1]]")));
   EXPECT_NE(error_of("line.geojson").find("has no polygon with an area"), std::string::npos);
-  base::WriteFileAtomically(folder / "flat.geojson", Features(OneFeature("", "", "Polygon", "[[[2,41],[2.1,41],[2,41],[2,41]]]")));
+  base::WriteFileAtomically(folder_ / "flat.geojson", Features(OneFeature("", "", "Polygon", "[[[2,41],[2.1,41],[2,41],[2,41]]]")));
   EXPECT_NE(error_of("flat.geojson").find("has no polygon with an area"), std::string::npos);
-  WriteShapefile(folder / "nowhere.shp", kShed, 0, "id", "1");
+  WriteShapefile(folder_ / "nowhere.shp", kShed, 0, "id", "1");
   EXPECT_NE(error_of("nowhere.shp").find("without a coordinate reference system"), std::string::npos) << error_of("nowhere.shp");
-  base::WriteFileAtomically(folder / "metres.geojson", Features(OneFeature("", "", "Polygon", "[[[500,100],[600,100],[600,200],[500,100]]]")));
+  base::WriteFileAtomically(folder_ / "metres.geojson", Features(OneFeature("", "", "Polygon", "[[[500,100],[600,100],[600,200],[500,100]]]")));
   EXPECT_NE(error_of("metres.geojson").find("no longitude and latitude"), std::string::npos);
 }
 
-TEST(ReadOutlines, GiveBackWhatWasWritten) {
+TEST_F(ReadOutlinesTest, GiveBackWhatWasWritten) {
   // Stars around a middle cross nothing, whatever their radii.
   std::mt19937 random(7);
   const auto whole = [&](int min, int max) { return std::uniform_int_distribution<int>(min, max)(random); };
@@ -222,9 +199,8 @@ TEST(ReadOutlines, GiveBackWhatWasWritten) {
     }
     layer.features.push_back(LayerOf({star}, {}, {id}).features[0]);
   }
-  const TemporaryFolder folder;
-  WriteVectorLayers(std::span(&layer, 1), true, kPlace, folder / "stars.gpkg");
-  const std::vector<Outline> outlines = ReadOutlines(folder / "stars.gpkg", true, kPlace);
+  WriteVectorLayers(std::span(&layer, 1), true, kMade31N, folder_ / "stars.gpkg");
+  const std::vector<Outline> outlines = ReadOutlines(folder_ / "stars.gpkg", true, kMade31N);
   ASSERT_EQ(outlines.size(), stars.size() + 1);
   for (size_t k = 0; k < stars.size(); ++k) {
     const Outline& found = outlines[k + 1];

@@ -4,20 +4,20 @@
 #include <gtest/gtest.h>
 #include <ogrsf_frmts.h>
 
-#include <ctime>
 #include <limits>
 #include <memory>
 #include <string>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "tests/core/gis/limited_file_size.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
+#include "tests/support/limited_file_size.h"
 
 namespace skyquilt::gis {
 namespace {
+
+using VectorLayers = InTemporaryFolder;
 
 const geo::UtmZone kMapZone = {32, true};
 
@@ -52,10 +52,9 @@ std::vector<VectorLayer> TwoLayers() {
   return layers;
 }
 
-TEST(VectorLayers, ComeBackThroughGdal) {
-  const TemporaryFolder folder;
-  WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "two.gpkg");
-  const OpenDataset file = OpenVectors(folder / "two.gpkg");
+TEST_F(VectorLayers, ComeBackThroughGdal) {
+  WriteVectorLayers(TwoLayers(), true, kMapZone, folder_ / "two.gpkg");
+  const OpenDataset file = OpenVectors(folder_ / "two.gpkg");
   ASSERT_NE(file, nullptr);
   ASSERT_EQ(file->GetLayerCount(), 2);
   OGRLayer* plans = file->GetLayer(0);
@@ -89,48 +88,42 @@ TEST(VectorLayers, ComeBackThroughGdal) {
   EXPECT_EQ(ring->getX(1), 572120.0);
 }
 
-TEST(VectorLayers, WithoutGeoreferenceHaveNoPlaceOnEarth) {
-  const TemporaryFolder folder;
-  WriteVectorLayers(TwoLayers(), false, {}, folder / "local.gpkg");
-  const OpenDataset file = OpenVectors(folder / "local.gpkg");
+TEST_F(VectorLayers, WithoutGeoreferenceHaveNoPlaceOnEarth) {
+  WriteVectorLayers(TwoLayers(), false, {}, folder_ / "local.gpkg");
+  const OpenDataset file = OpenVectors(folder_ / "local.gpkg");
   for (OGRLayer* layer : file->GetLayers()) EXPECT_TRUE(layer->GetSpatialRef() == nullptr || layer->GetSpatialRef()->IsLocal());
 }
 
-TEST(VectorLayers, TheSameLayersGiveTheSameBytes) {
-  const TemporaryFolder folder;
-  WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "a.gpkg");
+TEST_F(VectorLayers, TheSameLayersGiveTheSameBytes) {
+  WriteVectorLayers(TwoLayers(), true, kMapZone, folder_ / "a.gpkg");
   // Longer than the resolution of the time stamps.
   timespec wait = {.tv_sec = 0, .tv_nsec = 20'000'000};
   nanosleep(&wait, nullptr);
-  WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "b.gpkg");
-  WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "b.gpkg");
-  EXPECT_TRUE(base::ReadFile(folder / "a.gpkg") == base::ReadFile(folder / "b.gpkg"));
+  WriteVectorLayers(TwoLayers(), true, kMapZone, folder_ / "b.gpkg");
+  WriteVectorLayers(TwoLayers(), true, kMapZone, folder_ / "b.gpkg");
+  EXPECT_TRUE(base::ReadFile(folder_ / "a.gpkg") == base::ReadFile(folder_ / "b.gpkg"));
 }
 
-TEST(VectorLayers, FailuresLeaveTheEarlierFile) {
-  const TemporaryFolder folder;
-  base::WriteFileAtomically(folder / "two.gpkg", "earlier");
-  const std::string missing = InputErrorOf([&] { WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "no_such_folder/two.gpkg"); });
+TEST_F(VectorLayers, FailuresLeaveTheEarlierFile) {
+  base::WriteFileAtomically(folder_ / "two.gpkg", "earlier");
+  const std::string missing = InputErrorOf([&] { WriteVectorLayers(TwoLayers(), true, kMapZone, folder_ / "no_such_folder/two.gpkg"); });
   EXPECT_NE(missing.find("two.gpkg: cannot be created"), std::string::npos) << missing;
   {
     const LimitedFileSize full(60'000);
-    const std::string error = InputErrorOf([&] { WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "two.gpkg"); });
+    const std::string error = InputErrorOf([&] { WriteVectorLayers(TwoLayers(), true, kMapZone, folder_ / "two.gpkg"); });
     EXPECT_NE(error.find("Check the free space"), std::string::npos) << error;
   }
-  base::RequestCancel();
-  EXPECT_THROW(WriteVectorLayers(TwoLayers(), true, kMapZone, folder / "two.gpkg"), base::Interrupted);
-  base::ClearCancel();
-  EXPECT_EQ(base::ReadFile(folder / "two.gpkg"), "earlier");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  ExpectStopsWhenAsked([&] { WriteVectorLayers(TwoLayers(), true, kMapZone, folder_ / "two.gpkg"); });
+  EXPECT_EQ(base::ReadFile(folder_ / "two.gpkg"), "earlier");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
 }
 
-TEST(VectorLayers, RefuseWhatDoesNotFit) {
-  const TemporaryFolder folder;
+TEST_F(VectorLayers, RefuseWhatDoesNotFit) {
   const auto refuses = [&](const auto& change) {
     std::vector<VectorLayer> layers = TwoLayers();
     change(&layers);
     try {
-      WriteVectorLayers(layers, true, kMapZone, folder / "bad.gpkg");
+      WriteVectorLayers(layers, true, kMapZone, folder_ / "bad.gpkg");
     } catch (const std::logic_error&) {
       return true;
     }

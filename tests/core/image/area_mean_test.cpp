@@ -5,7 +5,6 @@
 
 #include <numeric>
 
-#include "core/base/errors.h"
 #include "core/image/draw_text.h"
 
 namespace skyquilt::image {

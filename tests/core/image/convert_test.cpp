@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "core/base/errors.h"
 #include "core/image/image.h"
 #include "tests/core/image/raw_files.h"
 #include "tests/support/error_of.h"

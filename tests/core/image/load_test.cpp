@@ -10,131 +10,124 @@
 #include "core/image/jpeg_structure.h"
 #include "tests/core/image/raw_files.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::image {
 namespace {
+
+using FloatTiff = InTemporaryFolder;
+using LoadRgb8Test = InTemporaryFolder;
+using ReadImageSizeTest = InTemporaryFolder;
 
 std::string JpegOf(const Image8& image, int quality = 95) {
   const std::vector<uint8_t> bytes = EncodeJpeg(image, quality);
   return {bytes.begin(), bytes.end()};
 }
 
-TEST(LoadRgb8, ReadsEveryPixelOfAPng) {
-  const TemporaryFolder folder;
+TEST_F(LoadRgb8Test, ReadsEveryPixelOfAPng) {
   const Image8 image = Pattern(37, 23);
-  WriteBytes(folder.path() / "a.png", PngBytes({37, 23, 8, 2, image.data}));
-  const Image8 loaded = LoadRgb8(folder.path() / "a.png");
+  WriteBytes(folder_.path() / "a.png", PngBytes({37, 23, 8, 2, image.data}));
+  const Image8 loaded = LoadRgb8(folder_.path() / "a.png");
   EXPECT_EQ(loaded.width, 37);
   EXPECT_EQ(loaded.height, 23);
   EXPECT_EQ(loaded.channels, 3);
   EXPECT_EQ(loaded.data, image.data);
 }
 
-TEST(LoadRgb8, RepeatsGreyInThreeChannels) {
-  const TemporaryFolder folder;
-  WriteBytes(folder.path() / "grey.png", PngBytes({3, 1, 8, 0, {0, 100, 255}}));
-  EXPECT_EQ(LoadRgb8(folder.path() / "grey.png").data, (std::vector<uint8_t>{0, 0, 0, 100, 100, 100, 255, 255, 255}));
+TEST_F(LoadRgb8Test, RepeatsGreyInThreeChannels) {
+  WriteBytes(folder_.path() / "grey.png", PngBytes({3, 1, 8, 0, {0, 100, 255}}));
+  EXPECT_EQ(LoadRgb8(folder_.path() / "grey.png").data, (std::vector<uint8_t>{0, 0, 0, 100, 100, 100, 255, 255, 255}));
 }
 
-TEST(LoadRgb8, ScalesSixteenBitsSoThatBlackAndWhiteStay) {
-  const TemporaryFolder folder;
+TEST_F(LoadRgb8Test, ScalesSixteenBitsSoThatBlackAndWhiteStay) {
   // 0, 257 * 128, 65535 as big-endian RGB.
-  WriteBytes(folder.path() / "deep.png", PngBytes({1, 1, 16, 2, {0x00, 0x00, 0x80, 0x80, 0xFF, 0xFF}}));
-  EXPECT_EQ(LoadRgb8(folder.path() / "deep.png").data, (std::vector<uint8_t>{0, 128, 255}));
+  WriteBytes(folder_.path() / "deep.png", PngBytes({1, 1, 16, 2, {0x00, 0x00, 0x80, 0x80, 0xFF, 0xFF}}));
+  EXPECT_EQ(LoadRgb8(folder_.path() / "deep.png").data, (std::vector<uint8_t>{0, 128, 255}));
 }
 
-TEST(LoadRgb8, DropsAlphaWithoutTouchingColour) {
-  const TemporaryFolder folder;
-  WriteBytes(folder.path() / "alpha.png", PngBytes({2, 1, 8, 6, {10, 20, 30, 0, 40, 50, 60, 255}}));
-  EXPECT_EQ(LoadRgb8(folder.path() / "alpha.png").data, (std::vector<uint8_t>{10, 20, 30, 40, 50, 60}));
-  WriteBytes(folder.path() / "grey_alpha.png", PngBytes({1, 1, 8, 4, {77, 128}}));
-  EXPECT_EQ(LoadRgb8(folder.path() / "grey_alpha.png").data, (std::vector<uint8_t>{77, 77, 77}));
+TEST_F(LoadRgb8Test, DropsAlphaWithoutTouchingColour) {
+  WriteBytes(folder_.path() / "alpha.png", PngBytes({2, 1, 8, 6, {10, 20, 30, 0, 40, 50, 60, 255}}));
+  EXPECT_EQ(LoadRgb8(folder_.path() / "alpha.png").data, (std::vector<uint8_t>{10, 20, 30, 40, 50, 60}));
+  WriteBytes(folder_.path() / "grey_alpha.png", PngBytes({1, 1, 8, 4, {77, 128}}));
+  EXPECT_EQ(LoadRgb8(folder_.path() / "grey_alpha.png").data, (std::vector<uint8_t>{77, 77, 77}));
 }
 
-TEST(LoadRgb8, DoesNotApplyExifOrientation) {
-  const TemporaryFolder folder;
+TEST_F(LoadRgb8Test, DoesNotApplyExifOrientation) {
   const std::string plain = JpegOf(Pattern(48, 16));
   // APP1: little-endian TIFF with the one tag Orientation (0x0112) = 6, a quarter turn.
   std::string exif("Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0", 32);
   const std::string app1 = std::string("\xFF\xE1\x00", 3) + static_cast<char>(exif.size() + 2) + exif;
-  WriteBytes(folder.path() / "plain.jpg", plain);
-  WriteBytes(folder.path() / "turned.jpg", plain.substr(0, 2) + app1 + plain.substr(2));
-  const Image8 turned = LoadRgb8(folder.path() / "turned.jpg");
+  WriteBytes(folder_.path() / "plain.jpg", plain);
+  WriteBytes(folder_.path() / "turned.jpg", plain.substr(0, 2) + app1 + plain.substr(2));
+  const Image8 turned = LoadRgb8(folder_.path() / "turned.jpg");
   EXPECT_EQ(turned.width, 48);
-  EXPECT_EQ(turned.data, LoadRgb8(folder.path() / "plain.jpg").data);
+  EXPECT_EQ(turned.data, LoadRgb8(folder_.path() / "plain.jpg").data);
 }
 
-TEST(LoadRgb8, RefusesAJpegCutAnywhere) {
-  const TemporaryFolder folder;
+TEST_F(LoadRgb8Test, RefusesAJpegCutAnywhere) {
   const std::string whole = JpegOf(Pattern(200, 150));
   for (size_t n = whole.size() - 1; n > 3; n -= std::max<size_t>(1, n / 12)) {
-    WriteBytes(folder.path() / "cut.jpg", whole.substr(0, n));
-    const std::string message = InputErrorOf([&] { LoadRgb8(folder.path() / "cut.jpg"); });
+    WriteBytes(folder_.path() / "cut.jpg", whole.substr(0, n));
+    const std::string message = InputErrorOf([&] { LoadRgb8(folder_.path() / "cut.jpg"); });
     EXPECT_NE(message.find("ends early (truncated JPEG)"), std::string::npos) << n << " of " << whole.size() << " bytes: " << message;
     EXPECT_NE(message.find("cut.jpg"), std::string::npos);
   }
 }
 
-TEST(LoadRgb8, RefusesAJpegWhoseTailIsZeros) {
-  const TemporaryFolder folder;
+TEST_F(LoadRgb8Test, RefusesAJpegWhoseTailIsZeros) {
   std::string bytes = JpegOf(Pattern(200, 150));
   std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), bytes.end(), '\0');
-  WriteBytes(folder.path() / "zeros.jpg", bytes);
-  EXPECT_NE(InputErrorOf([&] { LoadRgb8(folder.path() / "zeros.jpg"); }), "");
+  WriteBytes(folder_.path() / "zeros.jpg", bytes);
+  EXPECT_NE(InputErrorOf([&] { LoadRgb8(folder_.path() / "zeros.jpg"); }), "");
 }
 
-TEST(LoadRgb8, AcceptsDataBehindTheEndOfAJpeg) {
-  const TemporaryFolder folder;
+TEST_F(LoadRgb8Test, AcceptsDataBehindTheEndOfAJpeg) {
   const std::string whole = JpegOf(Pattern(64, 64));
-  WriteBytes(folder.path() / "whole.jpg", whole);
+  WriteBytes(folder_.path() / "whole.jpg", whole);
   // Drones append preview images and their own data; a preview cut short does not harm the photo.
-  WriteBytes(folder.path() / "more.jpg", whole + whole.substr(0, whole.size() / 2) + std::string(1000, '\xFF'));
-  EXPECT_EQ(LoadRgb8(folder.path() / "more.jpg").data, LoadRgb8(folder.path() / "whole.jpg").data);
+  WriteBytes(folder_.path() / "more.jpg", whole + whole.substr(0, whole.size() / 2) + std::string(1000, '\xFF'));
+  EXPECT_EQ(LoadRgb8(folder_.path() / "more.jpg").data, LoadRgb8(folder_.path() / "whole.jpg").data);
 }
 
-TEST(LoadRgb8, NamesTheProblemOfEveryBadFile) {
-  const TemporaryFolder folder;
+TEST_F(LoadRgb8Test, NamesTheProblemOfEveryBadFile) {
   const auto message = [&](const std::string& name, const std::string& bytes) {
-    WriteBytes(folder.path() / name, bytes);
-    return InputErrorOf([&] { LoadRgb8(folder.path() / name); });
+    WriteBytes(folder_.path() / name, bytes);
+    return InputErrorOf([&] { LoadRgb8(folder_.path() / name); });
   };
   EXPECT_NE(message("notes.jpg", "these are only notes\n").find("notes.jpg: is not an image"), std::string::npos);
   EXPECT_NE(message("empty.jpg", "").find("is empty"), std::string::npos);
   const std::string png = PngBytes({64, 64, 8, 2, Pattern(64, 64).data});
   EXPECT_NE(message("cut.png", png.substr(0, png.size() / 2)).find("cannot be decoded"), std::string::npos);
-  EXPECT_NE(InputErrorOf([&] { LoadRgb8(folder.path() / "absent.jpg"); }).find("absent.jpg"), std::string::npos);
-  EXPECT_NE(InputErrorOf([&] { LoadRgb8(folder.path()); }), "");
+  EXPECT_NE(InputErrorOf([&] { LoadRgb8(folder_.path() / "absent.jpg"); }).find("absent.jpg"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { LoadRgb8(folder_.path()); }), "");
 }
 
-TEST(ReadImageSize, AgreesWithDecodingForEveryKind) {
-  const TemporaryFolder folder;
-  SavePng(Pattern(31, 17), folder.path() / "a.png");
-  SaveFloatTiff(ImageF(31, 17, 1, 2.5F), folder.path() / "a.tif");
+TEST_F(ReadImageSizeTest, AgreesWithDecodingForEveryKind) {
+  SavePng(Pattern(31, 17), folder_.path() / "a.png");
+  SaveFloatTiff(ImageF(31, 17, 1, 2.5F), folder_.path() / "a.tif");
   const std::string jpeg = JpegOf(Pattern(31, 17));
-  WriteBytes(folder.path() / "a.jpg", jpeg);
+  WriteBytes(folder_.path() / "a.jpg", jpeg);
   // Maker notes can put the frame header far into the file.
   std::string app;
   for (int i = 0; i < 8; ++i) app.append("\xFF\xE4\xFF\xFF", 4).append(65533, '\x5A');
-  WriteBytes(folder.path() / "far.jpg", jpeg.substr(0, 2) + app + jpeg.substr(2));
+  WriteBytes(folder_.path() / "far.jpg", jpeg.substr(0, 2) + app + jpeg.substr(2));
   for (const char* name : {"a.png", "a.tif", "a.jpg", "far.jpg"}) {
     int width = 0;
     int height = 0;
-    ReadImageSize(folder.path() / name, &width, &height);
+    ReadImageSize(folder_.path() / name, &width, &height);
     EXPECT_EQ(width, 31) << name;
     EXPECT_EQ(height, 17) << name;
   }
 }
 
-TEST(ReadImageSize, RefusesFilesThatAreNoImages) {
-  const TemporaryFolder folder;
+TEST_F(ReadImageSizeTest, RefusesFilesThatAreNoImages) {
   int width = 0;
   int height = 0;
-  WriteBytes(folder.path() / "notes.jpg", "text");
-  EXPECT_NE(InputErrorOf([&] { ReadImageSize(folder.path() / "notes.jpg", &width, &height); }).find("is not an image"), std::string::npos);
-  WriteBytes(folder.path() / "cut.jpg", JpegOf(Pattern(64, 64)).substr(0, 100));
-  EXPECT_NE(InputErrorOf([&] { ReadImageSize(folder.path() / "cut.jpg", &width, &height); }), "");
-  EXPECT_NE(InputErrorOf([&] { ReadImageSize(folder.path() / "absent.jpg", &width, &height); }), "");
+  WriteBytes(folder_.path() / "notes.jpg", "text");
+  EXPECT_NE(InputErrorOf([&] { ReadImageSize(folder_.path() / "notes.jpg", &width, &height); }).find("is not an image"), std::string::npos);
+  WriteBytes(folder_.path() / "cut.jpg", JpegOf(Pattern(64, 64)).substr(0, 100));
+  EXPECT_NE(InputErrorOf([&] { ReadImageSize(folder_.path() / "cut.jpg", &width, &height); }), "");
+  EXPECT_NE(InputErrorOf([&] { ReadImageSize(folder_.path() / "absent.jpg", &width, &height); }), "");
 }
 
 TEST(LoadMask, IgnoresOnlyZero) {
@@ -148,15 +141,14 @@ TEST(LoadMask, IgnoresOnlyZero) {
   EXPECT_EQ(LoadMask(folder.path() / "deep.png").data, (std::vector<uint8_t>{0, 255}));
 }
 
-TEST(FloatTiff, KeepsEveryBit) {
-  const TemporaryFolder folder;
+TEST_F(FloatTiff, KeepsEveryBit) {
   ImageF depth(5, 3, 1);
   for (size_t i = 0; i < depth.data.size(); ++i) depth.data[i] = 100.0F / (static_cast<float>(i) + 0.3F);
   depth.data[4] = std::numeric_limits<float>::quiet_NaN();
   depth.data[5] = std::numeric_limits<float>::infinity();
   depth.data[6] = -1e-30F;
-  SaveFloatTiff(depth, folder.path() / "depth.tif");
-  const ImageF loaded = LoadFloatTiff(folder.path() / "depth.tif");
+  SaveFloatTiff(depth, folder_.path() / "depth.tif");
+  const ImageF loaded = LoadFloatTiff(folder_.path() / "depth.tif");
   ASSERT_EQ(loaded.width, 5);
   ASSERT_EQ(loaded.height, 3);
   for (size_t i = 0; i < depth.data.size(); ++i) {
@@ -164,10 +156,9 @@ TEST(FloatTiff, KeepsEveryBit) {
   }
 }
 
-TEST(FloatTiff, RefusesOtherPixels) {
-  const TemporaryFolder folder;
-  SavePng(Pattern(8, 8), folder.path() / "photo.png");
-  EXPECT_NE(InputErrorOf([&] { LoadFloatTiff(folder.path() / "photo.png"); }).find("floating-point"), std::string::npos);
+TEST_F(FloatTiff, RefusesOtherPixels) {
+  SavePng(Pattern(8, 8), folder_.path() / "photo.png");
+  EXPECT_NE(InputErrorOf([&] { LoadFloatTiff(folder_.path() / "photo.png"); }).find("floating-point"), std::string::npos);
 }
 
 TEST(Labels, AreKeptAsTheyAre) {

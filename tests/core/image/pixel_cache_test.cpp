@@ -1,22 +1,19 @@
 #include "core/image/pixel_cache.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
-#include <fstream>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/progress.h"
 #include "core/image/image.h"
 #include "tests/core/image/raw_files.h"
 #include "tests/support/error_of.h"
+#include "tests/support/limited_file_size.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::image {
@@ -177,23 +174,16 @@ TEST_F(PixelCacheTest, MayBeEmpty) {
 }
 
 TEST_F(PixelCacheTest, StopsOnCancelWithoutLeavingAFile) {
-  base::RequestCancel();
-  EXPECT_THROW(Open(40), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { Open(40); });
   EXPECT_FALSE(std::filesystem::exists(file_));
   EXPECT_FALSE(PartialLeft());
 }
 
 TEST_F(PixelCacheTest, RemovesThePartialFileWhenTheDiskIsFull) {
-  // A limit on the file size makes writes fail like a full disk.
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  rlimit small = before;
-  small.rlim_cur = 20000;
-  setrlimit(RLIMIT_FSIZE, &small);
-  const std::string message = InputErrorOf([&] { Open(40); });
-  setrlimit(RLIMIT_FSIZE, &before);
+  const std::string message = InputErrorOf([&] {
+    const LimitedFileSize limit(20000);
+    Open(40);
+  });
   EXPECT_NE(message.find("cannot be written"), std::string::npos) << message;
   EXPECT_FALSE(std::filesystem::exists(file_));
   EXPECT_FALSE(PartialLeft());

@@ -5,7 +5,6 @@
 #include <iostream>
 #include <sstream>
 
-#include "core/base/errors.h"
 #include "core/image/image.h"
 #include "tests/core/image/raw_files.h"
 #include "tests/support/error_of.h"

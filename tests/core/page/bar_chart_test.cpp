@@ -5,16 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/count_of.h"
 #include "tests/support/not_finite.h"
 
 namespace skyquilt::page {
 namespace {
-
-size_t Count(const std::string& text, const std::string& part) {
-  size_t n = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
-  return n;
-}
 
 // The numbers of an attribute of all elements of a class, in order.
 std::vector<double> Numbers(const std::string& html, const std::string& element, const std::string& attribute) {
@@ -36,7 +31,7 @@ TEST(BarChart, IsAsLongAsItsValue) {
   ASSERT_EQ(lengths.size(), 3U);
   EXPECT_NEAR(lengths[1], 4.0 * lengths[0], 0.3);  // lengths are written to a tenth of a pixel
   EXPECT_NEAR(lengths[1], 2.0 * lengths[2], 0.2);
-  EXPECT_EQ(Count(html, "legend"), 0U) << "without limits there is nothing to explain";
+  EXPECT_EQ(CountOf(html, "legend"), 0U) << "without limits there is nothing to explain";
 }
 
 TEST(BarChart, SaysNoDataWithoutAnyNumber) {
@@ -87,7 +82,7 @@ TEST(BarChart, CutsBetweenLetters) {
 TEST(BarChart, MarksLimits) {
   const std::string html = BarChart({{"a", 1.0, "1 s", 2.0, "2 s"}, {"b", 1.0, "", kNan}, {"c", kNan, "", 1.5}, {"d", 1.0, "", -1.0}},
                                     {.title = "t", .x_label = "x", .value_name = "seen", .limit_name = "allowed"});
-  EXPECT_EQ(Count(html, "<line class=\"limit\""), 2U);
+  EXPECT_EQ(CountOf(html, "<line class=\"limit\""), 2U);
   EXPECT_NE(html.find("<title>a: 1 s (allowed: 2 s)</title>"), std::string::npos) << html;
   EXPECT_NE(html.find("<title>b: 1</title>"), std::string::npos) << html;
   EXPECT_NE(html.find("<title>c: \xE2\x80\x93 (allowed: 1.5)</title>"), std::string::npos) << html;

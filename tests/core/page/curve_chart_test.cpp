@@ -2,8 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
+
+#include "tests/support/count_of.h"
 
 namespace skyquilt::page {
 namespace {
@@ -51,12 +52,6 @@ TEST(CurveChart, SurvivesEmptySingleAndNonFiniteData) {
   EXPECT_EQ(single.find("nan"), std::string::npos);
   EXPECT_EQ(CurveChart({{"a", {{0.0, 0.0}, {1.0, -1.0}, {2.0, 0.1}}}}, {"t", "x", "y", true}).find("nan"), std::string::npos);
   EXPECT_NE(CurveChart({{"<i>", {{0.0, 1.0}, {1.0, 2.0}}}}, {}).find("&lt;i&gt;"), std::string::npos);
-}
-
-size_t CountOf(const std::string& text, const std::string& part) {
-  size_t n = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
-  return n;
 }
 
 TEST(CurveChart, DrawsThousandsOfDotsAsOnePathAndLeavesNoneOut) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/random.h"
 #include "core/render/march.h"
 #include "tests/core/render/rays_from_above.h"
 #include "tests/support/random_field.h"

@@ -36,6 +36,16 @@ class TrainedFieldFile : public ::testing::Test {
     writer.Commit(folder_.path() / name);
     return folder_.path() / name;
   }
+  // The checkpoint of the field and the scene that is made from it.
+  std::pair<fs::path, fs::path> WriteScene(const render::TrainedField& f) const {
+    fs::path checkpoint = folder_ / "block.h5", scene = folder_ / "scene.h5";
+    checkpoint::ArchiveWriter block("block", 1), writer("scene", 1);
+    PutField(f, "", block);
+    block.Commit(checkpoint);
+    PutSceneField(f, checkpoint, "a/", writer);
+    writer.Commit(scene);
+    return {checkpoint, scene};
+  }
   static render::TrainedField Read(const fs::path& file) { return GetField(checkpoint::ArchiveReader(file), file, "a/"); }
   // The same file with some attributes left out, and others set by `add`.
   fs::path Rewrite(
@@ -177,13 +187,7 @@ TEST_P(TrainedFieldOf, RendersTheSameWithoutUnreadEntries) {
   render::TrainedField before = Make(GetParam(), 1);
   base::Random random(8);
   for (uint8_t& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F ? 1 : 0;
-  checkpoint::ArchiveWriter block("block", 1);
-  PutField(before, "", block);
-  const fs::path checkpoint = folder_.path() / "block.h5", scene = folder_.path() / "scene.h5";
-  block.Commit(checkpoint);
-  checkpoint::ArchiveWriter writer("scene", 1);
-  PutSceneField(before, checkpoint, "a/", writer);
-  writer.Commit(scene);
+  const auto [checkpoint, scene] = WriteScene(before);
   const checkpoint::ArchiveReader reader(scene);
   render::TrainedField after = Read(scene);
   EXPECT_EQ(ParameterCountOf(after), before.ParameterCount());
@@ -224,13 +228,7 @@ render::TrainedField ConesOf(int multisample, bool scale_features, uint64_t seed
 TEST_F(TrainedFieldFile, KeepsItsFootprints) {
   for (const auto& [multisample, scale_features] : {std::pair(1, false), {1, true}, {4, false}, {6, false}, {6, true}}) {
     const render::TrainedField before = ConesOf(multisample, scale_features);
-    checkpoint::ArchiveWriter block("block", 1);
-    PutField(before, "", block);
-    const fs::path checkpoint = folder_.path() / "block.h5", scene = folder_.path() / "scene.h5";
-    block.Commit(checkpoint);
-    checkpoint::ArchiveWriter writer("scene", 1);
-    PutSceneField(before, checkpoint, "a/", writer);
-    writer.Commit(scene);
+    const auto [checkpoint, scene] = WriteScene(before);
     for (const render::TrainedField& after : {GetField(checkpoint::ArchiveReader(checkpoint), checkpoint, ""), Read(scene)}) {
       EXPECT_EQ(after.config.multisample, multisample);
       EXPECT_EQ(after.config.scale_features, scale_features);
@@ -250,13 +248,7 @@ TEST_F(TrainedFieldFile, OfASceneRendersTheSameWithAnyNumberOfPositions) {
     before.footprint_min_m = 0.5;
     base::Random random(8);
     for (uint8_t& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F ? 1 : 0;
-    checkpoint::ArchiveWriter block("block", 1);
-    PutField(before, "", block);
-    const fs::path checkpoint = folder_.path() / "block.h5", scene = folder_.path() / "scene.h5";
-    block.Commit(checkpoint);
-    checkpoint::ArchiveWriter writer("scene", 1);
-    PutSceneField(before, checkpoint, "a/", writer);
-    writer.Commit(scene);
+    const auto [checkpoint, scene] = WriteScene(before);
     ExpectSameLook(before, Read(scene), 0.01F);
   }
 }

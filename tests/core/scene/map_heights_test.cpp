@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "core/geo/geoid.h"
 
 namespace skyquilt::scene {

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <limits>
 
-#include "core/base/errors.h"
 #include "core/base/random.h"
 #include "tests/support/error_of.h"
 #include "tests/support/random_scene.h"

@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "core/base/errors.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::scene {
 namespace {
+
+using SceneFileTest = InTemporaryFolder;
 
 checkpoint::ArchiveReader Stored(const geo::PlaceAccuracy& accuracy, const std::filesystem::path& file) {
   checkpoint::ArchiveWriter writer(kSceneKind, kSceneVersion);
@@ -17,10 +19,9 @@ checkpoint::ArchiveReader Stored(const geo::PlaceAccuracy& accuracy, const std::
   return OpenScene(file);
 }
 
-TEST(SceneFile, KeepsTheAccuracyOfItsPlace) {
-  const TemporaryFolder folder;
+TEST_F(SceneFileTest, KeepsTheAccuracyOfItsPlace) {
   const geo::PlaceAccuracy before = {.scale_percent = 0.1 / 3.0, .tilt_deg = 0.3, .yaw_deg = 0.0, .horizontal_m = 1.5, .vertical_m = 3.0};
-  const checkpoint::ArchiveReader reader = Stored(before, folder / "scene.h5");
+  const checkpoint::ArchiveReader reader = Stored(before, folder_ / "scene.h5");
   EXPECT_EQ(reader.DoubleAttribute("accuracy_scale_percent"), before.scale_percent);
   const geo::PlaceAccuracy after = GetAccuracy(reader);
   EXPECT_EQ(after.scale_percent, before.scale_percent);
@@ -30,9 +31,8 @@ TEST(SceneFile, KeepsTheAccuracyOfItsPlace) {
   EXPECT_EQ(after.vertical_m, before.vertical_m);
 }
 
-TEST(SceneFile, WithoutAccuracyItIsUnknown) {
-  const TemporaryFolder folder;
-  const checkpoint::ArchiveReader reader = Stored({.tilt_deg = 2.0}, folder / "scene.h5");
+TEST_F(SceneFileTest, WithoutAccuracyItIsUnknown) {
+  const checkpoint::ArchiveReader reader = Stored({.tilt_deg = 2.0}, folder_ / "scene.h5");
   EXPECT_FALSE(reader.HasAttribute("accuracy_scale_percent"));
   const geo::PlaceAccuracy accuracy = GetAccuracy(reader);
   EXPECT_EQ(accuracy.tilt_deg, 2.0);
@@ -42,17 +42,16 @@ TEST(SceneFile, WithoutAccuracyItIsUnknown) {
   EXPECT_TRUE(std::isnan(accuracy.vertical_m));
 }
 
-TEST(SceneFile, KeepsWhatItsHeightsAreAbove) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(GetHeightReference(Stored({}, folder / "old.h5"), folder / "old.h5"), geo::HeightReference::kUnknown);
+TEST_F(SceneFileTest, KeepsWhatItsHeightsAreAbove) {
+  EXPECT_EQ(GetHeightReference(Stored({}, folder_ / "old.h5"), folder_ / "old.h5"), geo::HeightReference::kUnknown);
   checkpoint::ArchiveWriter writer(kSceneKind, kSceneVersion);
   PutHeightReference(geo::HeightReference::kEgm96, writer);
-  writer.Commit(folder / "scene.h5");
-  EXPECT_EQ(GetHeightReference(OpenScene(folder / "scene.h5"), folder / "scene.h5"), geo::HeightReference::kEgm96);
+  writer.Commit(folder_ / "scene.h5");
+  EXPECT_EQ(GetHeightReference(OpenScene(folder_ / "scene.h5"), folder_ / "scene.h5"), geo::HeightReference::kEgm96);
   checkpoint::ArchiveWriter damaged(kSceneKind, kSceneVersion);
   damaged.SetAttribute("height_reference", std::string("sea level"));
-  damaged.Commit(folder / "damaged.h5");
-  EXPECT_THROW(GetHeightReference(OpenScene(folder / "damaged.h5"), folder / "damaged.h5"), base::InputError);
+  damaged.Commit(folder_ / "damaged.h5");
+  EXPECT_THROW(GetHeightReference(OpenScene(folder_ / "damaged.h5"), folder_ / "damaged.h5"), base::InputError);
 }
 
 }  // namespace

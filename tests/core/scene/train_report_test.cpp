@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::scene {
@@ -66,12 +67,9 @@ TEST_F(TrainReportFile, MissingOrDamagedIsAnErrorThatNamesTheFile) {
   for (const char* text : {"{\"ranks\": 2, \"fie", "[1, 2]", "{\"ranks\": 2}"}) {
     Write(text);
     EXPECT_FALSE(TryReadTrainReport(file_).has_value()) << text;
-    try {
-      ReadTrainReport(file_);
-      FAIL() << text;
-    } catch (const base::InputError& error) {
-      EXPECT_EQ(error.file(), file_);
-    }
+    const auto error = Caught<base::InputError>([&] { ReadTrainReport(file_); });
+    ASSERT_TRUE(error) << text;
+    EXPECT_EQ(error->file(), file_);
   }
 }
 

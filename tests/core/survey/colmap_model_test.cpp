@@ -8,10 +8,12 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::survey {
 namespace {
+
+using ColmapModelTest = InTemporaryFolder;
 
 ColmapModel SmallModel() {
   ColmapModel model;
@@ -129,7 +131,7 @@ std::string MessageOf(const std::filesystem::path& folder) {
   return InputErrorOf([&] { ReadColmapModel(folder); });
 }
 
-TEST(ColmapModel, TextAndBinaryGiveTheSameModel) {
+TEST_F(ColmapModelTest, TextAndBinaryGiveTheSameModel) {
   const ColmapModel model = SmallModel();
   for (const bool with_observations : {true, false}) {
     const TemporaryFolder text;
@@ -141,14 +143,13 @@ TEST(ColmapModel, TextAndBinaryGiveTheSameModel) {
   }
 }
 
-TEST(ColmapModel, TextWithCommentsBlankLinesAndWindowsLineEndsIsRead) {
-  const TemporaryFolder folder;
-  base::WriteFileAtomically(folder / "cameras.txt", "# a comment\r\n\r\n  # another\r\n1 PINHOLE 10 8 9 9 5 4\r\n");
+TEST_F(ColmapModelTest, TextWithCommentsBlankLinesAndWindowsLineEndsIsRead) {
+  base::WriteFileAtomically(folder_ / "cameras.txt", "# a comment\r\n\r\n  # another\r\n1 PINHOLE 10 8 9 9 5 4\r\n");
   base::WriteFileAtomically(
-      folder / "images.txt",
+      folder_ / "images.txt",
       "# comment\n1 1 0 0 0 0 0 0 1 a.jpg\n\n# between\n2 1 0 0 0 +1.5 0 0 1 sub\\b.jpg\n1.0 2.0 -1 3.0 4.0 5\n\n3 1 0 0 0 0 0 0 1 c.jpg");
-  base::WriteFileAtomically(folder / "points3D.txt", "\n# none\n5 1 2 3 10 20 30 0.5 1 0 2 1\n6 1 2 nan 10 20 30 0.5\n");
-  const ColmapModel model = ReadColmapModel(folder.path());
+  base::WriteFileAtomically(folder_ / "points3D.txt", "\n# none\n5 1 2 3 10 20 30 0.5 1 0 2 1\n6 1 2 nan 10 20 30 0.5\n");
+  const ColmapModel model = ReadColmapModel(folder_.path());
   ASSERT_EQ(model.images.size(), 3U);
   EXPECT_EQ(model.images[1].name, "sub/b.jpg");
   EXPECT_EQ(model.images[1].cam_from_world.translation.x(), 1.5);
@@ -210,34 +211,32 @@ TEST(ColmapObservations, DamagedOnesAreRefused) {
   EXPECT_THROW(ReadColmapObservations(binary / "absent"), base::InputError);
 }
 
-TEST(ColmapModel, EveryTruncationOfABinaryFileIsRefused) {
-  const TemporaryFolder folder;
+TEST_F(ColmapModelTest, EveryTruncationOfABinaryFileIsRefused) {
   const ColmapModel model = SmallModel();
   for (const char* name : {"cameras.bin", "images.bin", "points3D.bin"}) {
-    WriteBinary(model, folder.path());
-    const std::string whole = base::ReadFile(folder / name);
+    WriteBinary(model, folder_.path());
+    const std::string whole = base::ReadFile(folder_ / name);
     for (size_t length = 0; length < whole.size(); ++length) {
-      std::ofstream(folder / name, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
-      ASSERT_THROW(ReadColmapModel(folder.path()), base::InputError) << name << " cut to " << length;
+      std::ofstream(folder_ / name, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
+      ASSERT_THROW(ReadColmapModel(folder_.path()), base::InputError) << name << " cut to " << length;
     }
-    std::ofstream(folder / name, std::ios::binary | std::ios::trunc) << whole + "x";
-    EXPECT_THROW(ReadColmapModel(folder.path()), base::InputError) << name << " with an extra byte";
+    std::ofstream(folder_ / name, std::ios::binary | std::ios::trunc) << whole + "x";
+    EXPECT_THROW(ReadColmapModel(folder_.path()), base::InputError) << name << " with an extra byte";
   }
 }
 
-TEST(ColmapModel, HugeCountsAreRefusedBeforeAllocating) {
-  const TemporaryFolder folder;
+TEST_F(ColmapModelTest, HugeCountsAreRefusedBeforeAllocating) {
   for (const char* name : {"cameras.bin", "images.bin", "points3D.bin"}) {
-    WriteBinary(SmallModel(), folder.path());
-    std::string content = base::ReadFile(folder / name);
+    WriteBinary(SmallModel(), folder_.path());
+    std::string content = base::ReadFile(folder_ / name);
     const uint64_t huge = std::numeric_limits<uint64_t>::max() / 2;
     content.replace(0, sizeof(huge), reinterpret_cast<const char*>(&huge), sizeof(huge));
-    base::WriteFileAtomically(folder / name, content);
-    EXPECT_NE(MessageOf(folder.path()).find(name), std::string::npos);
+    base::WriteFileAtomically(folder_ / name, content);
+    EXPECT_NE(MessageOf(folder_.path()).find(name), std::string::npos);
   }
 }
 
-TEST(ColmapModel, NanInAPoseNamesThePhoto) {
+TEST_F(ColmapModelTest, NanInAPoseNamesThePhoto) {
   for (const bool binary : {true, false}) {
     const TemporaryFolder folder;
     ColmapModel model = SmallModel();
@@ -251,29 +250,27 @@ TEST(ColmapModel, NanInAPoseNamesThePhoto) {
   }
 }
 
-TEST(ColmapModel, ContradictionsAreRefused) {
-  const TemporaryFolder folder;
-  EXPECT_THROW(ReadColmapModel(folder / "absent"), base::InputError);
-  EXPECT_THROW(ReadColmapModel(folder.path()), base::InputError);
+TEST_F(ColmapModelTest, ContradictionsAreRefused) {
+  EXPECT_THROW(ReadColmapModel(folder_ / "absent"), base::InputError);
+  EXPECT_THROW(ReadColmapModel(folder_.path()), base::InputError);
   ColmapModel model = SmallModel();
   model.images[2].camera_id = 99;
-  WriteBinary(model, folder.path());
-  EXPECT_NE(MessageOf(folder.path()).find("99"), std::string::npos);
+  WriteBinary(model, folder_.path());
+  EXPECT_NE(MessageOf(folder_.path()).find("99"), std::string::npos);
   model = SmallModel();
   model.images[2].name = model.images[0].name;
-  WriteBinary(model, folder.path());
-  EXPECT_NE(MessageOf(folder.path()).find("twice"), std::string::npos);
+  WriteBinary(model, folder_.path());
+  EXPECT_NE(MessageOf(folder_.path()).find("twice"), std::string::npos);
   model = SmallModel();
   model.cameras[3].params[0] = -1.0;
-  WriteBinary(model, folder.path());
-  EXPECT_NE(MessageOf(folder.path()).find("camera 3"), std::string::npos);
+  WriteBinary(model, folder_.path());
+  EXPECT_NE(MessageOf(folder_.path()).find("camera 3"), std::string::npos);
 }
 
-TEST(ColmapModel, UnknownCameraModelsAreNamed) {
-  const TemporaryFolder folder;
-  WriteColmapText(SmallModel(), folder.path());
-  base::WriteFileAtomically(folder / "cameras.txt", "1 SPHERE 10 10 1 1 1 1 1 1 1 1 1 1 1 1\n");
-  EXPECT_NE(MessageOf(folder.path()).find("SPHERE"), std::string::npos);
+TEST_F(ColmapModelTest, UnknownCameraModelsAreNamed) {
+  WriteColmapText(SmallModel(), folder_.path());
+  base::WriteFileAtomically(folder_ / "cameras.txt", "1 SPHERE 10 10 1 1 1 1 1 1 1 1 1 1 1 1\n");
+  EXPECT_NE(MessageOf(folder_.path()).find("SPHERE"), std::string::npos);
 }
 
 }  // namespace

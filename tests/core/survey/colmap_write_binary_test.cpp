@@ -3,12 +3,11 @@
 #include <filesystem>
 #include <string>
 
-#include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/progress.h"
 #include "core/base/random.h"
 #include "core/survey/colmap_model.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::survey {
@@ -132,9 +131,7 @@ TEST_F(ProjectedColmapBinary, CancelledItLeavesTheFolderAsItWas) {
   const TemporaryFolder folder;
   WriteProjectedColmapBinary(FlightOver(1), folder.path());
   const std::string before = base::ReadFile(folder / "images.bin");
-  base::RequestCancel();
-  EXPECT_THROW(WriteProjectedColmapBinary(FlightOver(2), folder.path()), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { WriteProjectedColmapBinary(FlightOver(2), folder.path()); });
   EXPECT_TRUE(base::ReadFile(folder / "images.bin") == before);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), std::filesystem::directory_iterator()), 3);
 }

@@ -10,10 +10,12 @@
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/survey/survey.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::test {
 namespace {
+
+using ControlFitJson = InTemporaryFolder;
 
 using survey::ControlFit;
 using survey::ControlPointFit;
@@ -51,12 +53,11 @@ void ExpectSame(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   for (Eigen::Index axis = 0; axis < b.size(); ++axis) EXPECT_TRUE(a[axis] == b[axis] || (std::isnan(a[axis]) && std::isnan(b[axis])));
 }
 
-TEST(ControlFitJson, ASurveyKeepsEveryBitOfIt) {
-  const TemporaryFolder folder;
+TEST_F(ControlFitJson, ASurveyKeepsEveryBitOfIt) {
   survey::Survey survey;
   survey.control = SmallFit();
-  SaveSurvey(survey, folder.path());
-  const ControlFit after = survey::LoadSurvey(folder.path()).control, before = SmallFit();
+  SaveSurvey(survey, folder_.path());
+  const ControlFit after = survey::LoadSurvey(folder_.path()).control, before = SmallFit();
   EXPECT_EQ(after.file, before.file);
   EXPECT_EQ(after.crs, before.crs);
   EXPECT_EQ(after.heights, before.heights);
@@ -83,14 +84,13 @@ TEST(ControlFitJson, ASurveyKeepsEveryBitOfIt) {
   }
 }
 
-TEST(ControlFitJson, SurveysWithoutControlPointsHaveNone) {
-  const TemporaryFolder folder;
-  survey::SaveSurvey({}, folder.path());
-  EXPECT_EQ(base::ReadFile(folder / "survey.json").find("\"control\""), std::string::npos);
-  EXPECT_TRUE(survey::LoadSurvey(folder.path()).control.points.empty());
+TEST_F(ControlFitJson, SurveysWithoutControlPointsHaveNone) {
+  survey::SaveSurvey({}, folder_.path());
+  EXPECT_EQ(base::ReadFile(folder_ / "survey.json").find("\"control\""), std::string::npos);
+  EXPECT_TRUE(survey::LoadSurvey(folder_.path()).control.points.empty());
 }
 
-TEST(ControlFitJson, RefusesDamage) {
+TEST_F(ControlFitJson, RefusesDamage) {
   const nlohmann::json good = ToJson(SmallFit());
   EXPECT_NO_THROW(survey::ControlFitFromJson(good));
   const auto refused = [&](const std::function<void(nlohmann::json&)>& damage) {
@@ -111,14 +111,13 @@ TEST(ControlFitJson, RefusesDamage) {
     EXPECT_THROW(survey::ControlFitFromJson(value), nlohmann::json::exception) << key;
   }
   // In a whole survey the message names the file.
-  const TemporaryFolder folder;
   survey::Survey survey;
   survey.control = SmallFit();
-  SaveSurvey(survey, folder.path());
-  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
+  SaveSurvey(survey, folder_.path());
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder_ / "survey.json"));
   json["control"]["points"][0]["use"] = 7;
-  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
-  EXPECT_THROW(survey::LoadSurvey(folder.path()), base::InputError);
+  base::WriteFileAtomically(folder_ / "survey.json", base::JsonText(json));
+  EXPECT_THROW(survey::LoadSurvey(folder_.path()), base::InputError);
 }
 
 }  // namespace

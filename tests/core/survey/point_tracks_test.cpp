@@ -10,10 +10,12 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::survey {
 namespace {
+
+using TracksFile = InTemporaryFolder;
 
 constexpr size_t kPhotos = 6;
 constexpr TrackCounts kCounts = {.photos = kPhotos, .points = 3, .kept_points = 2, .observations = 9};
@@ -57,40 +59,37 @@ TEST(PointTracks, FollowThePhotosThatRemain) {
   EXPECT_EQ(List(fewer.PhotosOf(2)), (std::vector<int32_t>{0}));
 }
 
-TEST(TracksFile, IsReadBackAndTakesFourBytesPerObservation) {
-  const TemporaryFolder folder;
-  WriteTracks(Points(), KeptPoints(), kPhotos, folder / "tracks.bin");
-  EXPECT_EQ(std::filesystem::file_size(folder / "tracks.bin"), 48U + 4U * (3 + 5 + 2 + 4));
-  const SurveyTracks back = ReadTracks(folder / "tracks.bin", kCounts);
+TEST_F(TracksFile, IsReadBackAndTakesFourBytesPerObservation) {
+  WriteTracks(Points(), KeptPoints(), kPhotos, folder_ / "tracks.bin");
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "tracks.bin"), 48U + 4U * (3 + 5 + 2 + 4));
+  const SurveyTracks back = ReadTracks(folder_ / "tracks.bin", kCounts);
   EXPECT_EQ(back.points, Points());
   EXPECT_EQ(back.kept_points, KeptPoints());
 
-  WriteTracks({}, {}, 0, folder / "none.bin");
-  EXPECT_TRUE(ReadTracks(folder / "none.bin", {}).points.Empty());
+  WriteTracks({}, {}, 0, folder_ / "none.bin");
+  EXPECT_TRUE(ReadTracks(folder_ / "none.bin", {}).points.Empty());
 }
 
-TEST(TracksFile, OfAnotherSurveyIsRefused) {
-  const TemporaryFolder folder;
-  WriteTracks(Points(), KeptPoints(), kPhotos, folder / "tracks.bin");
+TEST_F(TracksFile, OfAnotherSurveyIsRefused) {
+  WriteTracks(Points(), KeptPoints(), kPhotos, folder_ / "tracks.bin");
   const auto refused = [&](const std::string& word, TrackCounts counts) {
-    const std::string error = InputErrorOf([&] { ReadTracks(folder / "tracks.bin", counts); });
+    const std::string error = InputErrorOf([&] { ReadTracks(folder_ / "tracks.bin", counts); });
     EXPECT_NE(error.find(word), std::string::npos) << error;
   };
   refused("6 photos, but survey.json says 5", {5, 3, 2, 9});
   refused("3 points, but survey.json says 4", {6, 4, 2, 9});
   refused("2 kept points, but survey.json says 1", {6, 3, 1, 9});
   refused("9 observations, but survey.json says 10", {6, 3, 2, 10});
-  EXPECT_THROW(ReadTracks(folder / "absent.bin", kCounts), base::InputError);
+  EXPECT_THROW(ReadTracks(folder_ / "absent.bin", kCounts), base::InputError);
 }
 
 // Cut off anywhere, longer, or with any byte of the header, the lengths or the photos changed so that it contradicts itself.
-TEST(TracksFile, DamageIsFound) {
-  const TemporaryFolder folder;
-  WriteTracks(Points(), KeptPoints(), kPhotos, folder / "tracks.bin");
-  const std::string whole = base::ReadFile(folder / "tracks.bin");
+TEST_F(TracksFile, DamageIsFound) {
+  WriteTracks(Points(), KeptPoints(), kPhotos, folder_ / "tracks.bin");
+  const std::string whole = base::ReadFile(folder_ / "tracks.bin");
   const auto read = [&](const std::string& content) {
-    std::ofstream(folder / "damaged.bin", std::ios::binary | std::ios::trunc) << content;
-    return ReadTracks(folder / "damaged.bin", kCounts);
+    std::ofstream(folder_ / "damaged.bin", std::ios::binary | std::ios::trunc) << content;
+    return ReadTracks(folder_ / "damaged.bin", kCounts);
   };
   for (size_t length = 0; length < whole.size(); ++length) EXPECT_THROW(read(whole.substr(0, length)), base::InputError) << length;
   EXPECT_THROW(read(whole + "abcd"), base::InputError);

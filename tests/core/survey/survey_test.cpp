@@ -12,10 +12,12 @@
 #include "core/base/json_text.h"
 #include "core/survey/geo_fit_json.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::survey {
 namespace {
+
+using SurveyTest = InTemporaryFolder;
 
 Survey SmallSurvey() {
   Survey survey;
@@ -82,11 +84,10 @@ void ExpectRefused(const std::string& word, const Edit& edit) {
   EXPECT_NE(error.find(word), std::string::npos) << word << ": " << error;
 }
 
-TEST(Survey, SavingAndLoadingKeepsEveryBit) {
-  const TemporaryFolder folder;
+TEST_F(SurveyTest, SavingAndLoadingKeepsEveryBit) {
   const Survey before = SmallSurvey();
-  SaveSurvey(before, folder.path());
-  const Survey after = LoadSurvey(folder.path());
+  SaveSurvey(before, folder_.path());
+  const Survey after = LoadSurvey(folder_.path());
   EXPECT_EQ(after.origin.latitude_deg, before.origin.latitude_deg);
   EXPECT_EQ(after.origin.height_m, before.origin.height_m);
   EXPECT_EQ(after.georeferenced, true);
@@ -127,37 +128,34 @@ TEST(Survey, SavingAndLoadingKeepsEveryBit) {
 }
 
 // As earlier versions wrote it.
-TEST(Survey, KeepsWhatItsHeightsAreAbove) {
-  const TemporaryFolder folder;
-  SaveSurvey(SmallSurvey(), folder.path());
-  EXPECT_EQ(LoadSurvey(folder.path()).height_reference, geo::HeightReference::kEgm96);
-  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
+TEST_F(SurveyTest, KeepsWhatItsHeightsAreAbove) {
+  SaveSurvey(SmallSurvey(), folder_.path());
+  EXPECT_EQ(LoadSurvey(folder_.path()).height_reference, geo::HeightReference::kEgm96);
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder_ / "survey.json"));
   ASSERT_EQ(json.erase("height_reference"), 1U);
-  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
-  EXPECT_EQ(LoadSurvey(folder.path()).height_reference, geo::HeightReference::kUnknown) << "of an older program";
+  base::WriteFileAtomically(folder_ / "survey.json", base::JsonText(json));
+  EXPECT_EQ(LoadSurvey(folder_.path()).height_reference, geo::HeightReference::kUnknown) << "of an older program";
 }
 
-TEST(Survey, KeepsWhetherHeldOutPhotosWereResected) {
-  const TemporaryFolder folder;
+TEST_F(SurveyTest, KeepsWhetherHeldOutPhotosWereResected) {
   Survey survey = SmallSurvey();
   survey.resected_holdout = true;
-  SaveSurvey(survey, folder.path());
-  EXPECT_TRUE(LoadSurvey(folder.path()).resected_holdout);
-  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
+  SaveSurvey(survey, folder_.path());
+  EXPECT_TRUE(LoadSurvey(folder_.path()).resected_holdout);
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder_ / "survey.json"));
   EXPECT_EQ(json.at("holdout_poses"), "resected");
   ASSERT_EQ(json.erase("holdout_poses"), 1U);
-  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
-  EXPECT_FALSE(LoadSurvey(folder.path()).resected_holdout) << "of an older program";
+  base::WriteFileAtomically(folder_ / "survey.json", base::JsonText(json));
+  EXPECT_FALSE(LoadSurvey(folder_.path()).resected_holdout) << "of an older program";
   ExpectRefused("'guessed'", [](nlohmann::json& edited) { edited["holdout_poses"] = "guessed"; });
 }
 
-TEST(Survey, ATruthWithoutNormalsAndClassesIsLoaded) {
-  const TemporaryFolder folder;
-  SaveSurvey(SmallSurvey(), folder.path());
-  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
+TEST_F(SurveyTest, ATruthWithoutNormalsAndClassesIsLoaded) {
+  SaveSurvey(SmallSurvey(), folder_.path());
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder_ / "survey.json"));
   for (const char* key : {"normals_folder", "classes_folder", "surface_ply"}) ASSERT_EQ(json["truth"].erase(key), 1U) << key;
-  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
-  const Survey survey = LoadSurvey(folder.path());
+  base::WriteFileAtomically(folder_ / "survey.json", base::JsonText(json));
+  const Survey survey = LoadSurvey(folder_.path());
   ASSERT_TRUE(survey.truth);
   EXPECT_EQ(survey.truth->depth_folder, "/t/depth");
   EXPECT_TRUE(survey.truth->normals_folder.empty());
@@ -165,49 +163,46 @@ TEST(Survey, ATruthWithoutNormalsAndClassesIsLoaded) {
   EXPECT_TRUE(survey.truth->surface_ply.empty());
 }
 
-TEST(Survey, MedianAglIgnoresUnknownOnes) {
+TEST_F(SurveyTest, MedianAglIgnoresUnknownOnes) {
   EXPECT_DOUBLE_EQ(SmallSurvey().MedianAgl(), 45.0);
   EXPECT_TRUE(std::isnan(Survey().MedianAgl()));
 }
 
-TEST(Survey, AnEmptySurveyIsSavedAndLoaded) {
-  const TemporaryFolder folder;
-  SaveSurvey({}, folder.path());
-  const Survey survey = LoadSurvey(folder.path());
+TEST_F(SurveyTest, AnEmptySurveyIsSavedAndLoaded) {
+  SaveSurvey({}, folder_.path());
+  const Survey survey = LoadSurvey(folder_.path());
   EXPECT_TRUE(survey.photos.empty());
   EXPECT_TRUE(survey.points.empty());
   EXPECT_FALSE(survey.truth);
 }
 
-TEST(Survey, OfAnOlderProgramHasNeitherKeptPointsNorTracks) {
-  const TemporaryFolder folder;
-  SaveSurvey(SmallSurvey(), folder.path());
-  nlohmann::json json = base::ParseJson(base::ReadFile(folder / "survey.json"));
+TEST_F(SurveyTest, OfAnOlderProgramHasNeitherKeptPointsNorTracks) {
+  SaveSurvey(SmallSurvey(), folder_.path());
+  nlohmann::json json = base::ParseJson(base::ReadFile(folder_ / "survey.json"));
   json.erase("n_kept_points");
   json.erase("n_observations");
-  base::WriteFileAtomically(folder / "survey.json", base::JsonText(json));
-  std::filesystem::remove(folder / "kept_points.ply");
-  std::filesystem::remove(folder / "tracks.bin");
-  const Survey survey = LoadSurvey(folder.path());
+  base::WriteFileAtomically(folder_ / "survey.json", base::JsonText(json));
+  std::filesystem::remove(folder_ / "kept_points.ply");
+  std::filesystem::remove(folder_ / "tracks.bin");
+  const Survey survey = LoadSurvey(folder_.path());
   EXPECT_EQ(survey.points.size(), 5U);
   EXPECT_TRUE(survey.kept_points.empty());
   EXPECT_TRUE(survey.tracks.Empty());
   EXPECT_FALSE(survey.HasTracks());
 }
 
-TEST(Survey, SavedWithoutKeptPointsOrTracksLeavesNoFilesOfThem) {
-  const TemporaryFolder folder;
+TEST_F(SurveyTest, SavedWithoutKeptPointsOrTracksLeavesNoFilesOfThem) {
   Survey survey = SmallSurvey();
-  SaveSurvey(survey, folder.path());
+  SaveSurvey(survey, folder_.path());
   survey.kept_points.clear();
   survey.tracks = survey.kept_tracks = {};
-  SaveSurvey(survey, folder.path());
-  EXPECT_FALSE(std::filesystem::exists(folder / "kept_points.ply"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "tracks.bin"));
-  EXPECT_FALSE(LoadSurvey(folder.path()).HasTracks());
+  SaveSurvey(survey, folder_.path());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "kept_points.ply"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "tracks.bin"));
+  EXPECT_FALSE(LoadSurvey(folder_.path()).HasTracks());
 }
 
-TEST(Survey, DamagedDescriptionsAreRefusedWithTheReason) {
+TEST_F(SurveyTest, DamagedDescriptionsAreRefusedWithTheReason) {
   ExpectRefused("p1.jpg", [](nlohmann::json& json) { json["photos"][1]["translation_m"][0] = nullptr; });
   ExpectRefused("p2.jpg", [](nlohmann::json& json) { json["photos"][2]["rotation_wxyz"] = {1.0, 1.0, 0.0, 0.0}; });
   ExpectRefused("camera 4", [](nlohmann::json& json) { json["photos"][0]["camera"] = 4; });
@@ -222,20 +217,19 @@ TEST(Survey, DamagedDescriptionsAreRefusedWithTheReason) {
   ExpectRefused("tracks.bin", [](nlohmann::json& json) { json["photos"].erase(2); });
 }
 
-TEST(Survey, DamagedPointFilesAreRefused) {
-  const TemporaryFolder folder;
-  EXPECT_THROW(LoadSurvey(folder.path()), base::InputError);
-  SaveSurvey(SmallSurvey(), folder.path());
+TEST_F(SurveyTest, DamagedPointFilesAreRefused) {
+  EXPECT_THROW(LoadSurvey(folder_.path()), base::InputError);
+  SaveSurvey(SmallSurvey(), folder_.path());
   for (const char* name : {"points.ply", "kept_points.ply", "tracks.bin"}) {
-    const std::string whole = base::ReadFile(folder / name);
+    const std::string whole = base::ReadFile(folder_ / name);
     for (const size_t length : {size_t{0}, size_t{10}, whole.size() / 2, whole.size() - 1}) {
-      std::ofstream(folder / name, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
-      EXPECT_THROW(LoadSurvey(folder.path()), base::InputError) << name << " cut to " << length;
+      std::ofstream(folder_ / name, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
+      EXPECT_THROW(LoadSurvey(folder_.path()), base::InputError) << name << " cut to " << length;
     }
-    std::filesystem::remove(folder / name);
-    EXPECT_THROW(LoadSurvey(folder.path()), base::InputError) << "without " << name;
-    base::WriteFileAtomically(folder / name, whole);
-    EXPECT_NO_THROW(LoadSurvey(folder.path()));
+    std::filesystem::remove(folder_ / name);
+    EXPECT_THROW(LoadSurvey(folder_.path()), base::InputError) << "without " << name;
+    base::WriteFileAtomically(folder_ / name, whole);
+    EXPECT_NO_THROW(LoadSurvey(folder_.path()));
   }
 }
 

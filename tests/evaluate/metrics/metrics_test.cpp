@@ -8,10 +8,12 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::evaluate::metrics {
 namespace {
+
+using MetricsJsonTest = InTemporaryFolder;
 
 TEST(MeanOfMeasured, LeavesOutWhatWasNotMeasured) {
   EXPECT_DOUBLE_EQ(MeanOfMeasured({20.0, kNotMeasured, 30.0}), 25.0);
@@ -25,7 +27,7 @@ TEST(MedianOfMeasured, IsTheMiddle) {
   EXPECT_TRUE(std::isnan(MedianOfMeasured({})));
 }
 
-TEST(MetricsJson, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
+TEST_F(MetricsJsonTest, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
   const auto json = base::ParseJson(MetricsJson(Metrics{}));
   for (const char* key : {"psnr", "ssim", "flip", "coverage", "psnr_full_frame", "ssim_full_frame", "flip_full_frame", "lpips", "seam_psnr_gap_db",
                           "train_seconds", "samples_per_second", "peak_rss_bytes"}) {
@@ -43,7 +45,7 @@ TEST(MetricsJson, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
   EXPECT_FALSE(json.contains("classes"));
 }
 
-TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
+TEST_F(MetricsJsonTest, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   Metrics metrics;
   metrics.psnr = 27.5;
   metrics.has_truth = true;
@@ -76,7 +78,7 @@ TEST(MetricsJson, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   EXPECT_TRUE(json["images"][1]["coverage"].is_null());
 }
 
-TEST(MetricsJson, IsReadBackAsItWasWritten) {
+TEST_F(MetricsJsonTest, IsReadBackAsItWasWritten) {
   Metrics metrics;
   metrics.psnr = 27.515625;
   metrics.seam_psnr_gap_db = -0.125;
@@ -92,9 +94,8 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   metrics.n_test = 3;
   metrics.resected_holdout = true;
   metrics.warnings = {{"one", "do this"}, {"two", "do that"}};
-  const TemporaryFolder folder;
-  base::WriteFileAtomically(folder.path() / "metrics.json", MetricsJson(metrics));
-  const Metrics back = ReadMetrics(folder.path() / "metrics.json");
+  base::WriteFileAtomically(folder_.path() / "metrics.json", MetricsJson(metrics));
+  const Metrics back = ReadMetrics(folder_.path() / "metrics.json");
   EXPECT_EQ(back.psnr, metrics.psnr);
   EXPECT_TRUE(std::isnan(back.ssim));
   EXPECT_EQ(back.seam_psnr_gap_db, metrics.seam_psnr_gap_db);
@@ -119,13 +120,13 @@ TEST(MetricsJson, IsReadBackAsItWasWritten) {
   EXPECT_EQ(back.n_test, 3);
   EXPECT_TRUE(back.resected_holdout);
   EXPECT_EQ(back.warnings, metrics.warnings);
-  base::WriteFileAtomically(folder.path() / "metrics.json", "{\"psnr\": 1, \"rank");
-  EXPECT_THROW(ReadMetrics(folder.path() / "metrics.json"), base::InputError);
-  base::WriteFileAtomically(folder.path() / "metrics.json", "{\"n_test\": 1, \"photos_held_out\": \"many\"}");
-  EXPECT_THROW(ReadMetrics(folder.path() / "metrics.json"), base::InputError);
+  base::WriteFileAtomically(folder_.path() / "metrics.json", "{\"psnr\": 1, \"rank");
+  EXPECT_THROW(ReadMetrics(folder_.path() / "metrics.json"), base::InputError);
+  base::WriteFileAtomically(folder_.path() / "metrics.json", "{\"n_test\": 1, \"photos_held_out\": \"many\"}");
+  EXPECT_THROW(ReadMetrics(folder_.path() / "metrics.json"), base::InputError);
 }
 
-TEST(MetricsJson, ScoresByClassAreReadBackToo) {
+TEST_F(MetricsJsonTest, ScoresByClassAreReadBackToo) {
   Metrics metrics;
   metrics.has_truth = true;
   EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("classes"));
@@ -147,16 +148,15 @@ TEST(MetricsJson, ScoresByClassAreReadBackToo) {
   EXPECT_TRUE(json["classes"]["roof"]["density_normal_median_deg"].is_null());
   EXPECT_EQ(json["classes"]["tree"]["pixels"], 0);
   EXPECT_TRUE(json["classes"]["tree"]["depth_nmad_m"].is_null());
-  const TemporaryFolder folder;
-  base::WriteFileAtomically(folder.path() / "metrics.json", text);
-  const Metrics back = ReadMetrics(folder.path() / "metrics.json");
+  base::WriteFileAtomically(folder_.path() / "metrics.json", text);
+  const Metrics back = ReadMetrics(folder_.path() / "metrics.json");
   ASSERT_EQ(back.classes.size(), 2U);
   EXPECT_EQ(back.classes[0].missing_pixels, 3);
   EXPECT_EQ(back.flat_roofs, 4);
   EXPECT_EQ(MetricsJson(back), text);
 }
 
-TEST(MetricsJson, TheGeoReferenceIsReadBackToo) {
+TEST_F(MetricsJsonTest, TheGeoReferenceIsReadBackToo) {
   Metrics metrics;
   metrics.georeferenced = true;
   survey::GeoFit& fit = metrics.geo_fit;
@@ -182,15 +182,14 @@ TEST(MetricsJson, TheGeoReferenceIsReadBackToo) {
   EXPECT_EQ(geo.at("tags_alone_tilt_deg"), 19.0);
   EXPECT_EQ(geo.at("problems"), (nlohmann::json{"no_gimbal", "lag"}));
 
-  const TemporaryFolder folder;
-  base::WriteFileAtomically(folder.path() / "metrics.json", text);
-  const Metrics back = ReadMetrics(folder.path() / "metrics.json");
+  base::WriteFileAtomically(folder_.path() / "metrics.json", text);
+  const Metrics back = ReadMetrics(folder_.path() / "metrics.json");
   EXPECT_TRUE(back.georeferenced);
   EXPECT_EQ(back.problem_codes, metrics.problem_codes);
   EXPECT_EQ(MetricsJson(back), text);
 }
 
-TEST(MetricsJson, AFitThatSaysNothingIsNull) {
+TEST_F(MetricsJsonTest, AFitThatSaysNothingIsNull) {
   Metrics metrics;
   metrics.geo_fit.rmse_m = 3.0;  // of a fit that was refused
   metrics.geo_fit.n_inliers = 3;
@@ -202,12 +201,11 @@ TEST(MetricsJson, AFitThatSaysNothingIsNull) {
   EXPECT_EQ(geo.at("gravity"), nlohmann::json::array());
 }
 
-TEST(MetricsJson, TheGeoReferenceOfAnEarlierVersionIsRead) {
-  const TemporaryFolder folder;
+TEST_F(MetricsJsonTest, TheGeoReferenceOfAnEarlierVersionIsRead) {
   base::WriteFileAtomically(
-      folder.path() / "metrics.json",
+      folder_.path() / "metrics.json",
       R"({"geo": {"georeferenced": true, "photos_with_gps": 4, "inliers": 3, "rmse_m": 1.5, "flight_vertical_offset_m": [2.0]}})");
-  const Metrics back = ReadMetrics(folder.path() / "metrics.json");
+  const Metrics back = ReadMetrics(folder_.path() / "metrics.json");
   EXPECT_TRUE(back.georeferenced);
   EXPECT_EQ(back.geo_fit.n_inliers, 3);
   EXPECT_EQ(back.geo_fit.rmse_m, 1.5);
@@ -216,7 +214,7 @@ TEST(MetricsJson, TheGeoReferenceOfAnEarlierVersionIsRead) {
   EXPECT_TRUE(back.problem_codes.empty());
 }
 
-TEST(MetricsJson, FileNamesThatAreNotUtf8AreRepaired) {
+TEST_F(MetricsJsonTest, FileNamesThatAreNotUtf8AreRepaired) {
   Metrics metrics;
   photos::PhotoScore photo;
   photo.name = "M\xFChle.jpg";

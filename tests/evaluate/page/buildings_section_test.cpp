@@ -5,38 +5,23 @@
 #include "core/base/pattern.h"
 #include "evaluate/page/building_numbers.h"
 #include "tests/evaluate/buildings/buildings_sample.h"
+#include "tests/evaluate/page/sample_report.h"
+#include "tests/support/count_of.h"
 
 namespace skyquilt::evaluate::page {
 namespace {
 
-size_t OccurrencesIn(const std::string& text, const std::string& part) {
-  size_t n = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
-  return n;
-}
-
-// A report without photos. Its input points to the members.
-struct BuildingsPage {
-  metrics::Metrics metrics;
-  survey::Survey survey;
-  partition::BlockSet blocks;
-  scene::TrainReport training;
+// A report without photos.
+struct BuildingsPage : ReportParts {
   buildings::BuildingsReport report;
-  ReportInput input;
 
   explicit BuildingsPage(buildings::ComparedBuildings compared) {
     survey.georeferenced = true;
     report.compared = std::move(compared);
     base::ThreadPool threads(1);
     metrics.buildings = buildings::ScoreBuildings(report.compared, threads);
-    input.metrics = &metrics;
-    input.survey = &survey;
-    input.blocks = &blocks;
-    input.training = &training;
     input.buildings = &report;
   }
-  BuildingsPage(const BuildingsPage&) = delete;
-  BuildingsPage& operator=(const BuildingsPage&) = delete;
 };
 
 buildings::ComparedBuildings Untrue(buildings::BuildingSet set) {
@@ -49,11 +34,11 @@ void ExpectSound(const std::string& html) {
   for (const char* tag :
        {"section", "table", "tbody", "tr", "td", "th", "svg", "a", "article", "details", "figure", "div", "dl", "p", "span", "text"}) {
     const std::string name(tag);
-    EXPECT_EQ(OccurrencesIn(html, "<" + name + " ") + OccurrencesIn(html, "<" + name + ">"), OccurrencesIn(html, "</" + name + ">")) << name;
+    EXPECT_EQ(CountOf(html, "<" + name + " ") + CountOf(html, "<" + name + ">"), CountOf(html, "</" + name + ">")) << name;
   }
-  EXPECT_EQ(OccurrencesIn(html, "nan") + OccurrencesIn(html, ">inf"), 0U);
+  EXPECT_EQ(CountOf(html, "nan") + CountOf(html, ">inf"), 0U);
   for (const base::PatternMatch& link : base::FindAll(html, "href=\"#([^\"]+)\"")) {
-    EXPECT_EQ(OccurrencesIn(html, "id=\"" + link[1] + "\""), 1U) << link[1];
+    EXPECT_EQ(CountOf(html, "id=\"" + link[1] + "\""), 1U) << link[1];
   }
 }
 
@@ -98,12 +83,12 @@ TEST(BuildingsSection, HasMapTableCardsAndPlans) {
   EXPECT_NE(html.find("\xC2\xB1\xE2\x80\xAF"
                       "0.12\xE2\x80\xAFm"),
             std::string::npos);
-  EXPECT_EQ(OccurrencesIn(html, "class=\"card photo building\""), 3U);
-  EXPECT_EQ(OccurrencesIn(html, "<path class=\"footprint"), 3U);
-  EXPECT_EQ(OccurrencesIn(html, "footprint unsure"), 1U);
+  EXPECT_EQ(CountOf(html, "class=\"card photo building\""), 3U);
+  EXPECT_EQ(CountOf(html, "<path class=\"footprint"), 3U);
+  EXPECT_EQ(CountOf(html, "footprint unsure"), 1U);
   EXPECT_NE(html.find("the model does not fit well"), std::string::npos);
   EXPECT_NE(html.find("src=\"images/building_2.jpg\""), std::string::npos);
-  EXPECT_EQ(OccurrencesIn(html, "No photo shows it"), 2U);
+  EXPECT_EQ(CountOf(html, "No photo shows it"), 2U);
   EXPECT_NE(html.find("only &lt;seen&gt; from above &amp; far away"), std::string::npos);
   EXPECT_EQ(html.find("<seen>"), std::string::npos);
   EXPECT_EQ(html.find("<b>12"), std::string::npos);
@@ -115,7 +100,7 @@ TEST(BuildingsSection, HasMapTableCardsAndPlans) {
   for (const char* absent : {"Completeness", "invented", "missed", "Truth", "Mean error"}) EXPECT_EQ(html.find(absent), std::string::npos) << absent;
   const std::string whole = BuildReportPage(page.input);
   EXPECT_NE(whole.find(html), std::string::npos);
-  EXPECT_EQ(OccurrencesIn(whole, "href=\"#buildings\""), 1U);
+  EXPECT_EQ(CountOf(whole, "href=\"#buildings\""), 1U);
 }
 
 TEST(BuildingsSection, MarksWhatWasMissedAndInvented) {
@@ -130,9 +115,9 @@ TEST(BuildingsSection, MarksWhatWasMissedAndInvented) {
   const BuildingsPage page(buildings::Compared(set, truth));
   const std::string html = BuildingsSection(page.input);
   ExpectSound(html);
-  EXPECT_EQ(OccurrencesIn(html, "<path class=\"missed\""), 1U);
-  EXPECT_EQ(OccurrencesIn(html, "<path class=\"uncounted\""), 1U);
-  EXPECT_EQ(OccurrencesIn(html, "footprint invented"), 1U);
+  EXPECT_EQ(CountOf(html, "<path class=\"missed\""), 1U);
+  EXPECT_EQ(CountOf(html, "<path class=\"uncounted\""), 1U);
+  EXPECT_EQ(CountOf(html, "footprint invented"), 1U);
   EXPECT_EQ(html.find("<house>"), std::string::npos);
   for (const char* text : {"Found and missed", "Errors of the measures", "75.0\xE2\x80\xAF%" /* 3 of 4 */, "60.0\xE2\x80\xAF%" /* quality */,
                            "over 50 m\xC2\xB2", "<td>deck</td>", "The kind of roof is right for 100.0\xE2\x80\xAF%", "true outline that was missed",
@@ -145,12 +130,12 @@ TEST(BuildingsSection, OnlyTheLargestHaveCards) {
   const BuildingsPage page(Untrue(buildings::MadeTown(70)));
   const std::string html = BuildingsSection(page.input);
   ExpectSound(html);
-  EXPECT_EQ(OccurrencesIn(html, "class=\"card photo building\""), buildings::kBuildingCards);
-  EXPECT_EQ(OccurrencesIn(html, "<tr id=\"building-row-"), 70U);
+  EXPECT_EQ(CountOf(html, "class=\"card photo building\""), buildings::kBuildingCards);
+  EXPECT_EQ(CountOf(html, "<tr id=\"building-row-"), 70U);
   EXPECT_NE(html.find("of the 60 largest of 70 buildings"), std::string::npos);
   EXPECT_NE(html.find("48 smaller buildings"), std::string::npos);
   // The map leads to the row of those without.
-  EXPECT_EQ(OccurrencesIn(html, "href=\"#building-row-"), 10U);
+  EXPECT_EQ(CountOf(html, "href=\"#building-row-"), 10U);
   const std::vector<size_t> order = buildings::BuildingsWithCards(page.report.compared.set);
   for (size_t i = 1; i < order.size(); ++i) {
     const auto area = [&](size_t k) { return Area(page.report.compared.set.buildings[order[k]].footprint); };
@@ -190,7 +175,7 @@ TEST(BuildingsSection, SaysInOneSentenceThatNothingWasFound) {
   const BuildingsPage missed(buildings::Compared({}, buildings::TruthOf(buildings::MadeTown(3))));
   const std::string all_missed = BuildingsSection(missed.input);
   ExpectSound(all_missed);
-  EXPECT_EQ(OccurrencesIn(all_missed, "<path class=\"missed\""), 3U);
+  EXPECT_EQ(CountOf(all_missed, "<path class=\"missed\""), 3U);
   EXPECT_NE(all_missed.find("<td class=\"num\" data-v=\"0\">0.0\xE2\x80\xAF%</td>"), std::string::npos);
 }
 
@@ -206,14 +191,14 @@ TEST(BuildingPlan, ShowsTheWallsOfCompoundShapesAndRidges) {
   skyquilt::buildings::HousePlan flat;
   flat.roof = buildings::RoofKind::kFlat;
   const std::string l_shape = BuildingPlan(skyquilt::buildings::MadeLHouse(flat), set);
-  EXPECT_EQ(OccurrencesIn(l_shape, "<text"), 6U) << "each wall of an L";
+  EXPECT_EQ(CountOf(l_shape, "<text"), 6U) << "each wall of an L";
   EXPECT_EQ(l_shape.find("class=\"ridge\""), std::string::npos);
   const std::string gable = BuildingPlan(skyquilt::buildings::MadeHouse({}), set);
-  EXPECT_EQ(OccurrencesIn(gable, "<text"), 2U);
+  EXPECT_EQ(CountOf(gable, "<text"), 2U);
   EXPECT_NE(gable.find("class=\"ridge\""), std::string::npos);
   const std::string court = BuildingPlan(skyquilt::buildings::MadeCourtyard(flat, 2.5), set);
   const size_t walls = court.find("class=\"walls\"");
-  EXPECT_EQ(OccurrencesIn(court.substr(walls, court.find("/>", walls) - walls), "Z"), 2U) << "the yard is a hole";
+  EXPECT_EQ(CountOf(court.substr(walls, court.find("/>", walls) - walls), "Z"), 2U) << "the yard is a hole";
   set.scale = 2.0;
   EXPECT_NE(BuildingPlan(skyquilt::buildings::MadeHouse({}), set).find("24.00"), std::string::npos) << "a scale bar stretches lengths";
   EXPECT_EQ(BuildingPlan(buildings::Building{}, set), "");

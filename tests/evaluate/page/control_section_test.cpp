@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
@@ -48,39 +47,28 @@ survey::ControlFit SampleControl() {
 }
 
 // The sample's pictures take two seconds, so that all tests share them; each begins with the same survey and metrics.
-class ControlPage : public testing::Test {
+class ControlPage : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    shared_folder_ = std::make_unique<TemporaryFolder>();
-    shared_ = std::make_unique<SampleReport>(shared_folder_->path());
-    survey_ = shared_->survey;
-    survey_.control = SampleControl();
-    metrics_ = shared_->metrics;
-  }
-  static void TearDownTestSuite() {
-    shared_.reset();
-    shared_folder_.reset();
-  }
   ControlPage() {
-    sample_.survey = survey_;
-    sample_.metrics = metrics_;
+    static const survey::Survey survey = sample_.survey;
+    static const metrics::Metrics metrics = sample_.metrics;
+    sample_.survey = survey;
+    sample_.survey.control = SampleControl();
+    sample_.metrics = metrics;
     sample_.input.mark_pictures.clear();
   }
+  static const TemporaryFolder& SharedFolder() {
+    static const TemporaryFolder folder;
+    return folder;
+  }
+  static SampleReport& Shared() {
+    static SampleReport sample(SharedFolder().path());
+    return sample;
+  }
 
-  SampleReport& sample_ = *shared_;
-  TemporaryFolder& folder_ = *shared_folder_;
-
- private:
-  static std::unique_ptr<TemporaryFolder> shared_folder_;
-  static std::unique_ptr<SampleReport> shared_;
-  static survey::Survey survey_;
-  static metrics::Metrics metrics_;
+  SampleReport& sample_ = Shared();
+  const TemporaryFolder& folder_ = SharedFolder();
 };
-
-std::unique_ptr<TemporaryFolder> ControlPage::shared_folder_;
-std::unique_ptr<SampleReport> ControlPage::shared_;
-survey::Survey ControlPage::survey_;
-metrics::Metrics ControlPage::metrics_;
 
 TEST_F(ControlPage, TellsErrorsAndWhatTheyMean) {
   const std::string html = ControlSection(sample_.input);

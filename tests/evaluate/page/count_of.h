@@ -1,18 +1,13 @@
-// What tests of pages count: parts of a text, and tags that are opened and closed.
+// What tests of pages count: tags that are opened and closed.
 #pragma once
 
 #include <gtest/gtest.h>
 
-#include <cstddef>
 #include <string>
 
-namespace skyquilt::evaluate::page {
+#include "tests/support/count_of.h"
 
-inline size_t CountOf(const std::string& text, const std::string& part) {
-  size_t n = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
-  return n;
-}
+namespace skyquilt::evaluate::page {
 
 // Every tag that is opened is closed, and no number is NaN or infinite.
 inline void ExpectBalanced(const std::string& html) {

@@ -1,9 +1,7 @@
 #include "evaluate/page/geo_section.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "core/base/pattern.h"
@@ -11,6 +9,7 @@
 #include "evaluate/page/sections.h"
 #include "tests/evaluate/page/count_of.h"
 #include "tests/evaluate/page/sample_report.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::evaluate::page {
 namespace {
@@ -21,16 +20,12 @@ constexpr const char* kSize = "viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"";
 class GeoPage : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = std::filesystem::temp_directory_path() / ("skyquilt_geo_page_" + std::to_string(::getpid()));
-    sample_ = std::make_unique<SampleReport>(folder_);
-    poor_ = std::make_unique<SampleReport>(folder_);
+    folder_ = std::make_unique<TemporaryFolder>();
+    sample_ = std::make_unique<SampleReport>(folder_->path());
+    poor_ = std::make_unique<SampleReport>(folder_->path());
     poor_->MakePoor();
   }
-  static void TearDownTestSuite() {
-    sample_.reset();
-    poor_.reset();
-    std::filesystem::remove_all(folder_);
-  }
+  static void TearDownTestSuite() { folder_.reset(); }
   // The section for a changed survey.
   static std::string SectionOf(const survey::Survey& survey) {
     ReportInput input = sample_->input;
@@ -46,8 +41,9 @@ class GeoPage : public testing::Test {
     exact.fit.flight_vertical_drift_m.clear();
     return exact;
   }
-  static inline std::filesystem::path folder_;
+  static inline std::unique_ptr<TemporaryFolder> folder_;
   static inline std::unique_ptr<SampleReport> sample_, poor_;
+  survey::Survey survey_ = sample_->survey;
 };
 
 // The value beside a name in a table of figures.
@@ -93,14 +89,13 @@ TEST_F(GeoPage, TellsAccuracyCorrectionsAndChecks) {
 }
 
 TEST_F(GeoPage, WhatIsUnknownIsADash) {
-  survey::Survey survey = sample_->survey;
-  survey.fit.accuracy = {};
-  survey.fit.tag_lag_s = 0.0;
-  survey.fit.tag_lag_sigma_s = kNotMeasured;
-  survey.fit.tags_alone_tilt_deg = kNotMeasured;
-  survey.fit.gravity[0] = {.kind = "gimbal", .lean_east_deg = kNotMeasured, .lean_north_deg = kNotMeasured, .sigma_deg = kNotMeasured};
-  survey.checks = {};
-  const std::string html = SectionOf(survey);
+  survey_.fit.accuracy = {};
+  survey_.fit.tag_lag_s = 0.0;
+  survey_.fit.tag_lag_sigma_s = kNotMeasured;
+  survey_.fit.tags_alone_tilt_deg = kNotMeasured;
+  survey_.fit.gravity[0] = {.kind = "gimbal", .lean_east_deg = kNotMeasured, .lean_north_deg = kNotMeasured, .sigma_deg = kNotMeasured};
+  survey_.checks = {};
+  const std::string html = SectionOf(survey_);
   ExpectBalanced(html);
   for (const char* name : {"Tilt", "Yaw", "Vertical position", "Rolling shutter", "Doming", "Lens distortion k1"}) {
     EXPECT_EQ(ValueOf(html, name), "\xE2\x80\x93") << name;
@@ -110,10 +105,9 @@ TEST_F(GeoPage, WhatIsUnknownIsADash) {
 }
 
 TEST_F(GeoPage, AMechanicalShutterIsSaid) {
-  survey::Survey survey = sample_->survey;
-  survey.checks.readout_ms = 0.0;
-  survey.checks.smear_px = 0.0;
-  const std::string html = SectionOf(survey);
+  survey_.checks.readout_ms = 0.0;
+  survey_.checks.smear_px = 0.0;
+  const std::string html = SectionOf(survey_);
   EXPECT_NE(html.find("DJI &lt;FC300S&gt; has a global or mechanical shutter"), std::string::npos);
   EXPECT_EQ(ValueOf(html, "Rolling shutter"), "0.0\xE2\x80\xAFpx");
 }
@@ -142,20 +136,18 @@ TEST_F(GeoPage, MapHasAnArrowPerTagAndKeepsFarOnesInside) {
 }
 
 TEST_F(GeoPage, SmallResidualsAreExaggeratedAndTheMapSaysSo) {
-  survey::Survey survey = sample_->survey;
-  EXPECT_NE(GeoMap(survey).find("<b>5 times too far</b>"), std::string::npos);
+  EXPECT_NE(GeoMap(survey_).find("<b>5 times too far</b>"), std::string::npos);
   // Tags that are ten times as far away need no exaggeration.
-  for (survey::Photo& photo : survey.photos) {
+  for (survey::Photo& photo : survey_.photos) {
     if (photo.gps) photo.gps->latitude_deg += 3e-4;
   }
-  EXPECT_EQ(GeoMap(survey).find("times too far"), std::string::npos);
+  EXPECT_EQ(GeoMap(survey_).find("times too far"), std::string::npos);
 }
 
 TEST_F(GeoPage, MapOfOnePhotoOrOneLineHasASize) {
-  survey::Survey survey = sample_->survey;
   for (const size_t n : {size_t{9}, size_t{1}}) {
-    survey.photos.resize(n);
-    const std::string map = GeoMap(survey);
+    survey_.photos.resize(n);
+    const std::string map = GeoMap(survey_);
     ExpectBalanced(map);
     const auto size = base::FindAll(map, kSize);
     ASSERT_FALSE(size.empty());
@@ -178,9 +170,8 @@ TEST_F(GeoPage, ChartsShowEveryResidualAndHeight) {
 }
 
 TEST_F(GeoPage, ChartsOfPhotosWithoutTimesSaySo) {
-  survey::Survey survey = sample_->survey;
-  survey.photos[5].time_s.reset();
-  EXPECT_EQ(CountOf(GeoCharts(survey), "photo, in order of names"), 2U);
+  survey_.photos[5].time_s.reset();
+  EXPECT_EQ(CountOf(GeoCharts(survey_), "photo, in order of names"), 2U);
 }
 
 TEST_F(GeoPage, GravityEvidenceIsInTableAndPlot) {
@@ -198,10 +189,9 @@ TEST_F(GeoPage, GravityEvidenceIsInTableAndPlot) {
 }
 
 TEST_F(GeoPage, EvidenceFarBeyondTheOthersStandsOnTheRim) {
-  survey::Survey survey = sample_->survey;
-  survey.fit.gravity[3].lean_east_deg = 19.0;
-  survey.fit.gravity[3].lean_north_deg = 0.0;
-  const std::string html = GravityEvidenceTable(survey);
+  survey_.fit.gravity[3].lean_east_deg = 19.0;
+  survey_.fit.gravity[3].lean_north_deg = 0.0;
+  const std::string html = GravityEvidenceTable(survey_);
   EXPECT_NE(html.find("GPS heights (beyond the rim)"), std::string::npos);
   EXPECT_NE(html.find("<circle class=\"dot hollow\" cx=\"308.0\" cy=\"170.0\""), std::string::npos) << html;
 }
@@ -249,10 +239,9 @@ TEST_F(GeoPage, AnExactFrameIsOnlyComparedWithItsTags) {
 }
 
 TEST_F(GeoPage, SaysThatTheShapeIsThatOfTheTags) {
-  survey::Survey survey = sample_->survey;
-  EXPECT_EQ(SectionOf(survey).find("bundle adjustment"), std::string::npos);
-  survey.fit.adjusted_to_tags = true;
-  EXPECT_NE(SectionOf(survey).find("a bundle adjustment with the tags"), std::string::npos);
+  EXPECT_EQ(SectionOf(survey_).find("bundle adjustment"), std::string::npos);
+  survey_.fit.adjusted_to_tags = true;
+  EXPECT_NE(SectionOf(survey_).find("a bundle adjustment with the tags"), std::string::npos);
 }
 
 TEST_F(GeoPage, AnExactFrameWithoutTagsHasNothingToShow) {
@@ -282,10 +271,9 @@ TEST_F(GeoPage, ResidualTableHasTheThreeDirectionsAndTheWorstFirst) {
 }
 
 TEST_F(GeoPage, NamesAndTextsNeverBecomeMarkup) {
-  survey::Survey survey = sample_->survey;
-  survey.fit.gravity[0].kind = "<script>kind";
-  survey.photos[77].name = "<script>untagged.jpg";
-  const std::string html = SectionOf(survey);
+  survey_.fit.gravity[0].kind = "<script>kind";
+  survey_.photos[77].name = "<script>untagged.jpg";
+  const std::string html = SectionOf(survey_);
   EXPECT_EQ(html.find("<b>DJI"), std::string::npos);
   EXPECT_EQ(html.find("<script>"), std::string::npos);
   EXPECT_EQ(html.find("<FC300S>"), std::string::npos);
@@ -296,12 +284,11 @@ TEST_F(GeoPage, NamesAndTextsNeverBecomeMarkup) {
 }
 
 TEST_F(GeoPage, TheBlockMapShowsTagsWithoutHeightToo) {
-  survey::Survey survey = sample_->survey;
-  for (survey::Photo& photo : survey.photos) {
+  for (survey::Photo& photo : survey_.photos) {
     if (photo.gps) photo.gps->height_m = kNotMeasured;
   }
   ReportInput input = sample_->input;
-  input.survey = &survey;
+  input.survey = &survey_;
   const std::string map = BlockMapSvg(input);
   EXPECT_EQ(CountOf(map, "<polyline class=\"track\""), 2U);
   EXPECT_EQ(CountOf(map, "h6m-3 -3v6"), 80U);

@@ -261,16 +261,7 @@ TEST_F(ReportPage, LongPausesDoNotSqueezeTheFlights) {
 }
 
 TEST(ReportPageOfNothing, SaysWhatIsMissing) {
-  const metrics::Metrics metrics;
-  const survey::Survey survey;
-  const partition::BlockSet blocks;
-  const scene::TrainReport training;
-  ReportInput input;
-  input.metrics = &metrics;
-  input.survey = &survey;
-  input.blocks = &blocks;
-  input.training = &training;
-  const std::string html = BuildReportPage(input);
+  const std::string html = BuildReportPage(ReportParts().input);
   EXPECT_NE(html.find("No photo was scored"), std::string::npos);
   EXPECT_NE(html.find("no geo-reference: local frame, unknown scale"), std::string::npos);
   EXPECT_NE(html.find("No data"), std::string::npos);

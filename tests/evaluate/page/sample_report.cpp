@@ -367,10 +367,6 @@ SampleReport::SampleReport(const std::filesystem::path& folder) {
 
   brightness = CloudyFlight(survey, folder);
   input.title = "town <sample>";
-  input.metrics = &metrics;
-  input.survey = &survey;
-  input.blocks = &blocks;
-  input.training = &training;
   input.curves = curves;
   input.brightness = &brightness;
 }

@@ -4,30 +4,16 @@
 
 #include "evaluate/page/report_images.h"
 #include "evaluate/page/sections.h"
+#include "tests/evaluate/page/sample_report.h"
+#include "tests/support/count_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::evaluate::page {
 namespace {
 
-size_t TimesIn(const std::string& text, const std::string& part) {
-  size_t n = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
-  return n;
-}
-
-// A report of one photo. Its input points to the members.
-struct SmallReport {
-  metrics::Metrics metrics;
-  survey::Survey survey;
-  partition::BlockSet blocks;
-  scene::TrainReport training;
-  ReportInput input;
-
+// A report of one photo.
+struct SmallReport : ReportParts {
   SmallReport() {
-    input.metrics = &metrics;
-    input.survey = &survey;
-    input.blocks = &blocks;
-    input.training = &training;
     metrics.photos = {{.name = "<one>.jpg"}};
     PhotoImages& images = input.images.emplace_back();
     images.photo = "images/a.jpg";
@@ -79,11 +65,11 @@ TEST(SurfaceSection, ShowsPicturesScoresAndFiles) {
   }
   for (const char* tag : {"section", "table", "tbody", "tr", "td", "article", "figure", "div", "dl", "p", "h3"}) {
     const std::string name(tag);
-    EXPECT_EQ(TimesIn(html, "<" + name + " ") + TimesIn(html, "<" + name + ">"), TimesIn(html, "</" + name + ">")) << name;
+    EXPECT_EQ(CountOf(html, "<" + name + " ") + CountOf(html, "<" + name + ">"), CountOf(html, "</" + name + ">")) << name;
   }
-  EXPECT_EQ(TimesIn(html, "nan") + TimesIn(html, ">inf"), 0U);
+  EXPECT_EQ(CountOf(html, "nan") + CountOf(html, ">inf"), 0U);
   const std::string page = BuildReportPage(report.input);
-  EXPECT_EQ(TimesIn(page, "href=\"#surface\""), 1U);
+  EXPECT_EQ(CountOf(page, "href=\"#surface\""), 1U);
   EXPECT_NE(page.find(html), std::string::npos);
 }
 

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numeric>
-
 #include "tests/evaluate/photos/nadir_view.h"
 #include "tests/support/not_finite.h"
 

@@ -52,77 +52,74 @@ struct Deck {
   }
 };
 
-TEST(FlatRoofs, AnExactRoofIsFlat) {
+class FlatRoofs : public ::testing::Test, protected Deck {};
+
+TEST_F(FlatRoofs, AnExactRoofIsFlat) {
   const FlatRoofScore score = Deck().Score();
   EXPECT_EQ(score.roofs, 1);
   EXPECT_NEAR(score.spread.rms_m, 0.0, 1e-5);
 }
 
-TEST(FlatRoofs, RoughnessIsMeasuredOnTheDeckOnly) {
-  Deck deck;
+TEST_F(FlatRoofs, RoughnessIsMeasuredOnTheDeckOnly) {
   base::Random random(5);
-  for (float& z : deck.findings.z_depth.data) z += static_cast<float>(0.25 * random.Normal());
+  for (float& z : findings.z_depth.data) z += static_cast<float>(0.25 * random.Normal());
   for (int y = 0; y < kViewHeight; ++y) {
     for (int x = 0; x < kViewWidth; ++x) {
       const bool rim = std::abs(x + 0.5 - 50) > 14 || std::abs(y + 0.5 - 40) > 9;
-      if (rim) *deck.findings.z_depth.At(x, y) += 30.0F;  // parapets, walls and ground
+      if (rim) *findings.z_depth.At(x, y) += 30.0F;  // parapets, walls and ground
       const bool box = x >= 40 && x < 44 && y >= 36 && y < 40;
-      if (box) *deck.findings.true_depth.At(x, y) -= 2.4F;  // a stair housing is a level roof too
-      if (box) *deck.findings.z_depth.At(x, y) -= 5.0F;
+      if (box) *findings.true_depth.At(x, y) -= 2.4F;  // a stair housing is a level roof too
+      if (box) *findings.z_depth.At(x, y) -= 5.0F;
       const bool slope = x >= 55 && x < 57 && y >= 36 && y < 40;
-      if (slope) deck.findings.true_normals.At(x, y)[2] = 0.7F;
-      if (slope) *deck.findings.z_depth.At(x, y) += 5.0F;
+      if (slope) findings.true_normals.At(x, y)[2] = 0.7F;
+      if (slope) *findings.z_depth.At(x, y) += 5.0F;
     }
   }
   for (int x = 0; x < kViewWidth; ++x) {
-    *deck.findings.true_class.At(x, 45) = static_cast<uint8_t>(SurfaceClass::kTree);
-    *deck.findings.z_depth.At(x, 45) -= 9.0F;
-    *deck.findings.scored.At(x, 46) = 0;
-    *deck.findings.z_depth.At(x, 46) -= 9.0F;
+    *findings.true_class.At(x, 45) = static_cast<uint8_t>(SurfaceClass::kTree);
+    *findings.z_depth.At(x, 45) -= 9.0F;
+    *findings.scored.At(x, 46) = 0;
+    *findings.z_depth.At(x, 46) -= 9.0F;
   }
-  const FlatRoofScore score = deck.Score();
+  const FlatRoofScore score = Score();
   EXPECT_EQ(score.roofs, 1);
   EXPECT_NEAR(score.spread.rms_m, 0.25, 0.02);
   EXPECT_NEAR(score.spread.nmad_m, 0.25, 0.02);
 }
 
-TEST(FlatRoofs, ATiltedPlaneIsFlatToo) {
-  Deck deck;
+TEST_F(FlatRoofs, ATiltedPlaneIsFlatToo) {
   for (int y = 0; y < kViewHeight; ++y) {
     for (int x = 0; x < kViewWidth; ++x) {
       // On the plane z = 0.1 east: from 100 m up, the ray at x metres per 100 m of z-depth meets it where 100 - z_depth = 0.1 x z_depth / 100.
-      *deck.findings.z_depth.At(x, y) = static_cast<float>(100.0 / (1.0 + 0.1 * (x + 0.5 - 50) / 100.0));
+      *findings.z_depth.At(x, y) = static_cast<float>(100.0 / (1.0 + 0.1 * (x + 0.5 - 50) / 100.0));
     }
   }
-  EXPECT_NEAR(deck.Score().spread.rms_m, 0.0, 1e-4);
+  EXPECT_NEAR(Score().spread.rms_m, 0.0, 1e-4);
 }
 
-TEST(FlatRoofs, FewPixelsThatAreFarOffCountInTheRmsOnly) {
-  Deck deck;
-  for (int x = 47; x < 53; ++x) *deck.findings.z_depth.At(x, 40) += 5.0F;  // 6 of 504, in the middle: the plane is not tilted
-  const PlaneSpread spread = deck.Score().spread;
+TEST_F(FlatRoofs, FewPixelsThatAreFarOffCountInTheRmsOnly) {
+  for (int x = 47; x < 53; ++x) *findings.z_depth.At(x, 40) += 5.0F;  // 6 of 504, in the middle: the plane is not tilted
+  const PlaneSpread spread = Score().spread;
   EXPECT_NEAR(spread.rms_m, 5.0 * std::sqrt(6.0 / 504.0), 0.05);
   EXPECT_LT(spread.nmad_m, 0.05);
 }
 
-TEST(FlatRoofs, FewPointsAreNotMeasured) {
-  Deck deck;
-  deck.area.half_m = {3.4, 3.4};  // 36 pixels
-  EXPECT_EQ(deck.Score().roofs, 0);
-  EXPECT_TRUE(std::isnan(deck.Score().spread.rms_m));
-  FlatRoofPoints two_photos({deck.area});
-  two_photos.Add(deck.task, deck.findings);
-  two_photos.Add(deck.task, deck.findings);
+TEST_F(FlatRoofs, FewPointsAreNotMeasured) {
+  area.half_m = {3.4, 3.4};  // 36 pixels
+  EXPECT_EQ(Score().roofs, 0);
+  EXPECT_TRUE(std::isnan(Score().spread.rms_m));
+  FlatRoofPoints two_photos({area});
+  two_photos.Add(task, findings);
+  two_photos.Add(task, findings);
   EXPECT_EQ(two_photos.Result().roofs, 1);
 }
 
-TEST(FlatRoofs, WithoutTruthThereAreNone) {
-  Deck deck;
-  deck.findings.true_class = image::Image8();
-  EXPECT_EQ(deck.Score().roofs, 0);
+TEST_F(FlatRoofs, WithoutTruthThereAreNone) {
+  findings.true_class = image::Image8();
+  EXPECT_EQ(Score().roofs, 0);
 }
 
-TEST(FlatRoofs, AreasAreTheFootprintsWithoutTheRim) {
+TEST_F(FlatRoofs, AreasAreTheFootprintsWithoutTheRim) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "buildings.json";
   base::WriteFileAtomically(file, R"({"buildings": [
@@ -142,7 +139,7 @@ TEST(FlatRoofs, AreasAreTheFootprintsWithoutTheRim) {
 }
 
 // The tower's deck is measured, not the podium's below it.
-TEST(FlatRoofs, DecksUnderOtherPartsAreLeftOut) {
+TEST_F(FlatRoofs, DecksUnderOtherPartsAreLeftOut) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "buildings.json";
   base::WriteFileAtomically(file, R"({"buildings": [

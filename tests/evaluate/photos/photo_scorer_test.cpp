@@ -43,9 +43,10 @@ double Psnr(double difference) {
   return -20.0 * std::log10(difference / 255.0);
 }
 
-TEST(ScorePhoto, AllPixelsCoveredGiveTheFullFrameScore) {
-  FlatGround flat;
-  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+class ScorePhotoTest : public ::testing::Test, protected FlatGround {};
+
+TEST_F(ScorePhotoTest, AllPixelsCoveredGiveTheFullFrameScore) {
+  const PhotoResult findings = ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads);
   EXPECT_EQ(findings.score.used_pixels, kScoredWidth * kScoredHeight);
   EXPECT_EQ(findings.score.covered_pixels, kScoredWidth * kScoredHeight);
   EXPECT_DOUBLE_EQ(findings.score.Coverage(), 1.0);
@@ -56,9 +57,8 @@ TEST(ScorePhoto, AllPixelsCoveredGiveTheFullFrameScore) {
   EXPECT_EQ(findings.score.flip, findings.score.flip_full);
 }
 
-TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
-  FlatGround flat;
-  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+TEST_F(ScorePhotoTest, BlocksAndSeamsGetTheirOwnPixels) {
+  const PhotoResult findings = ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads);
   ASSERT_EQ(findings.per_block.size(), 2U);
   EXPECT_EQ(PixelsOf(findings.per_block[0]), 50 * kScoredHeight);
   EXPECT_EQ(PixelsOf(findings.per_block[1]), 50 * kScoredHeight);
@@ -68,59 +68,54 @@ TEST(ScorePhoto, BlocksAndSeamsGetTheirOwnPixels) {
   EXPECT_EQ(PixelsOf(findings.seams.AllInterior()), 2 * 40 * (kScoredHeight - 10));  // without seam and rim
 }
 
-TEST(ScorePhoto, PixelsSeenByOneViewOnlyAreNotCovered) {
-  FlatGround flat;
+TEST_F(ScorePhotoTest, PixelsSeenByOneViewOnlyAreNotCovered) {
   // The second view is moved 50 m west: its frame ends at x = 0 + 10 (60 m half width at 120 m height).
   const TrainingViews views({NadirView(0, 0, 120), NadirView(-50, 0, 120)});
-  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(task, rendered, views, area, threads);
   EXPECT_EQ(findings.score.covered_pixels, 60 * kScoredHeight);
   EXPECT_EQ(findings.scored.data[0], 1);
   EXPECT_EQ(findings.scored.data[kScoredWidth - 1], 0);
   EXPECT_GT(findings.score.psnr_db, findings.score.psnr_full_db);  // the worse half is partly uncovered
 }
 
-TEST(ScorePhoto, MaskedPixelsCountNowhere) {
-  FlatGround flat;
-  flat.task.mask.assign(static_cast<size_t>(kScoredWidth) * kScoredHeight, 1);
+TEST_F(ScorePhotoTest, MaskedPixelsCountNowhere) {
+  task.mask.assign(static_cast<size_t>(kScoredWidth) * kScoredHeight, 1);
   for (int y = 0; y < kScoredHeight; ++y) {
-    for (int x = 50; x < kScoredWidth; ++x) flat.task.mask[static_cast<size_t>(y) * kScoredWidth + static_cast<size_t>(x)] = 0;
+    for (int x = 50; x < kScoredWidth; ++x) task.mask[static_cast<size_t>(y) * kScoredWidth + static_cast<size_t>(x)] = 0;
   }
-  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads);
   EXPECT_EQ(findings.score.used_pixels, 50 * kScoredHeight);
   EXPECT_NEAR(findings.score.psnr_full_db, Psnr(10.0), 1e-3);
   EXPECT_EQ(PixelsOf(findings.per_block[1]), 0);
 }
 
-TEST(ScorePhoto, HolesOverPhotographedGroundStillCount) {
-  FlatGround flat;
-  for (render::RayColor& ray : flat.rendered) {
+TEST_F(ScorePhotoTest, HolesOverPhotographedGroundStillCount) {
+  for (render::RayColor& ray : rendered) {
     ray = render::RayColor{};
     ray.depth = ray.depth_median = std::numeric_limits<float>::quiet_NaN();
   }
-  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads);
   EXPECT_GT(findings.score.Coverage(), 0.9);
   EXPECT_NEAR(findings.score.psnr_full_db, Psnr(100.0), 1e-3);
 }
 
-TEST(ScorePhoto, DepthIsComparedAlongTheOpticalAxis) {
-  FlatGround flat;
-  flat.task.true_depth = image::ImageF(2 * kScoredWidth, 2 * kScoredHeight, 1, 100.5F);  // of twice the size; the render is half a metre too near
-  *flat.task.true_depth.At(0, 0) = std::numeric_limits<float>::quiet_NaN();
-  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+TEST_F(ScorePhotoTest, DepthIsComparedAlongTheOpticalAxis) {
+  task.true_depth = image::ImageF(2 * kScoredWidth, 2 * kScoredHeight, 1, 100.5F);  // of twice the size; the render is half a metre too near
+  *task.true_depth.At(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  const PhotoResult findings = ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads);
   EXPECT_NEAR(findings.score.depth_rmse_m, 0.5, 1e-4);
   EXPECT_NEAR(findings.score.depth_median_abs_m, 0.5, 1e-3);
 }
 
-TEST(ScorePhoto, NormalsAndClassesComeAtTheScoredSize) {
-  FlatGround flat;
-  EXPECT_TRUE(ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads).normals.Empty());
-  flat.task.true_normals = image::ImageF(2 * kScoredWidth, 2 * kScoredHeight, 3, 0.0F);
-  for (size_t i = 2; i < flat.task.true_normals.data.size(); i += 3) flat.task.true_normals.data[i] = 1.0F;
-  flat.task.true_class = image::Image8(2 * kScoredWidth, 2 * kScoredHeight, 1, 3);
+TEST_F(ScorePhotoTest, NormalsAndClassesComeAtTheScoredSize) {
+  EXPECT_TRUE(ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads).normals.Empty());
+  task.true_normals = image::ImageF(2 * kScoredWidth, 2 * kScoredHeight, 3, 0.0F);
+  for (size_t i = 2; i < task.true_normals.data.size(); i += 3) task.true_normals.data[i] = 1.0F;
+  task.true_class = image::Image8(2 * kScoredWidth, 2 * kScoredHeight, 1, 3);
   for (int y = 0; y < 2 * kScoredHeight; ++y) {
-    for (int x = 20; x < 40; ++x) *flat.task.true_class.At(x, y) = 5;
+    for (int x = 20; x < 40; ++x) *task.true_class.At(x, y) = 5;
   }
-  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+  const PhotoResult findings = ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads);
   ASSERT_EQ(findings.true_class.width, kScoredWidth);
   ASSERT_EQ(findings.true_class.height, kScoredHeight);
   for (int x = 0; x < kScoredWidth; ++x) EXPECT_EQ(*findings.true_class.At(x, 7), x >= 10 && x < 20 ? 5 : 3) << x;
@@ -129,22 +124,20 @@ TEST(ScorePhoto, NormalsAndClassesComeAtTheScoredSize) {
   EXPECT_NEAR(findings.normals.At(30, 30)[2], 1.0F, 1e-5F);  // of the rendered level ground
 }
 
-TEST(ScorePhoto, SameResultForAnyNumberOfThreads) {
-  FlatGround flat;
+TEST_F(ScorePhotoTest, SameResultForAnyNumberOfThreads) {
   base::ThreadPool one(1);
   const TrainingViews views = FlatGround::TwoEverywhere();
-  const PhotoResult a = ScorePhoto(flat.task, flat.rendered, views, flat.area, flat.threads);
-  const PhotoResult b = ScorePhoto(flat.task, flat.rendered, views, flat.area, one);
+  const PhotoResult a = ScorePhoto(task, rendered, views, area, threads);
+  const PhotoResult b = ScorePhoto(task, rendered, views, area, one);
   EXPECT_EQ(a.score.psnr_db, b.score.psnr_db);
   EXPECT_EQ(a.seams.AllInterior().sum, b.seams.AllInterior().sum);
   EXPECT_EQ(a.score.flip, b.score.flip);
   EXPECT_EQ(a.scored.data, b.scored.data);
 }
 
-TEST(ScorePhoto, NonFiniteRenderedColoursAreBlackNotNan) {
-  FlatGround flat;
-  flat.rendered[5].rgb_srgb[1] = std::numeric_limits<float>::quiet_NaN();
-  const PhotoResult findings = ScorePhoto(flat.task, flat.rendered, FlatGround::TwoEverywhere(), flat.area, flat.threads);
+TEST_F(ScorePhotoTest, NonFiniteRenderedColoursAreBlackNotNan) {
+  rendered[5].rgb_srgb[1] = std::numeric_limits<float>::quiet_NaN();
+  const PhotoResult findings = ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads);
   EXPECT_TRUE(std::isfinite(findings.score.psnr_db));
 }
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 
 #include "evaluate/surface/photo_errors.h"
 #include "tests/evaluate/photos/nadir_view.h"
@@ -58,9 +57,10 @@ const SurfaceAgreement& ClassOf(const SurfaceComparison& comparison, const std::
   throw std::runtime_error("no class " + name);
 }
 
-TEST(CompareSurfaces, TheTruthItselfIsPerfect) {
-  Place place;
-  const SurfaceComparison same = place.Compare(MeshOf({kGround, kRoad, kRoof}));
+class CompareSurfacesTest : public ::testing::Test, protected Place {};
+
+TEST_F(CompareSurfacesTest, TheTruthItselfIsPerfect) {
+  const SurfaceComparison same = Compare(MeshOf({kGround, kRoad, kRoof}));
   EXPECT_EQ(FScores(same.all), std::vector<double>(6, 1.0));
   EXPECT_LT(same.all.accuracy_median_m, 1e-5);
   EXPECT_LT(same.all.completeness_median_m, 1e-5);
@@ -69,20 +69,18 @@ TEST(CompareSurfaces, TheTruthItselfIsPerfect) {
   EXPECT_NEAR(static_cast<double>(same.all.true_samples), 64000.0, 500.0);
 }
 
-TEST(CompareSurfaces, AShiftCountsOnlyAtLargerDistances) {
-  Place place;
+TEST_F(CompareSurfacesTest, AShiftCountsOnlyAtLargerDistances) {
   for (const double sign : {1.0, -1.0}) {
     const double up_m = sign * 3.0 * kGsd_m;
-    const SurfaceComparison moved = place.Compare(MeshOf({Moved(kGround, up_m), Moved(kRoad, up_m), Moved(kRoof, up_m)}));
+    const SurfaceComparison moved = Compare(MeshOf({Moved(kGround, up_m), Moved(kRoad, up_m), Moved(kRoof, up_m)}));
     EXPECT_EQ(FScores(moved.all), (std::vector<double>{0.0, 0.0, 1.0, 0.0, 0.0, 0.0}));
     EXPECT_NEAR(moved.all.accuracy_median_m, 0.3, 1e-5);
     EXPECT_NEAR(moved.all.completeness_median_m, 0.3, 1e-5);
   }
 }
 
-TEST(CompareSurfaces, WhatIsMissingLowersRecallOnly) {
-  Place place;
-  const SurfaceComparison half = place.Compare(MeshOf({kGround, kRoad}));
+TEST_F(CompareSurfacesTest, WhatIsMissingLowersRecallOnly) {
+  const SurfaceComparison half = Compare(MeshOf({kGround, kRoad}));
   for (const SurfaceFScore& score : half.all.f_scores) {
     EXPECT_EQ(score.precision, 1.0);
     EXPECT_NEAR(score.recall, 0.5, 0.05);  // the rim of the roof is not near the ground, 3 m below
@@ -93,9 +91,8 @@ TEST(CompareSurfaces, WhatIsMissingLowersRecallOnly) {
   EXPECT_TRUE(std::isinf(ClassOf(half, "roof").completeness_median_m));
 }
 
-TEST(CompareSurfaces, EveryClassHasItsOwnScores) {
-  Place place;
-  const SurfaceComparison mixed = place.Compare(MeshOf({Moved(kGround, 0.01), Moved(kRoad, 0.15), Moved(kRoof, -0.3)}));
+TEST_F(CompareSurfacesTest, EveryClassHasItsOwnScores) {
+  const SurfaceComparison mixed = Compare(MeshOf({Moved(kGround, 0.01), Moved(kRoad, 0.15), Moved(kRoof, -0.3)}));
   EXPECT_EQ(FScores(ClassOf(mixed, "road")), (std::vector<double>{0.0, 1.0, 1.0, 0.0, 0.0, 1.0}));
   EXPECT_EQ(FScores(ClassOf(mixed, "roof")), (std::vector<double>{0.0, 0.0, 1.0, 0.0, 0.0, 0.0}));
   EXPECT_NEAR(ClassOf(mixed, "ground").f_scores[0].f, 0.6, 0.02);  // roads are ground: 6 of 10 m are near
@@ -104,39 +101,35 @@ TEST(CompareSurfaces, EveryClassHasItsOwnScores) {
   EXPECT_EQ(mixed.all.mesh_samples, ClassOf(mixed, "ground").mesh_samples + ClassOf(mixed, "roof").mesh_samples);
 }
 
-TEST(CompareSurfaces, WhatNoPhotoSeesDoesNotCount) {
-  Place place;
+TEST_F(CompareSurfacesTest, WhatNoPhotoSeesDoesNotCount) {
   const Plate cellar{-10, -8, 0, 8, -2.0};
-  AddPlate(cellar, SurfaceClass::kGround, &place.truth);
+  AddPlate(cellar, SurfaceClass::kGround, &truth);
   // Neither its absence nor its presence.
-  EXPECT_EQ(FScores(place.Compare(MeshOf({kGround, kRoad, kRoof})).all), std::vector<double>(6, 1.0));
-  EXPECT_EQ(FScores(place.Compare(MeshOf({kGround, kRoad, kRoof, cellar})).all), std::vector<double>(6, 1.0));
+  EXPECT_EQ(FScores(Compare(MeshOf({kGround, kRoad, kRoof})).all), std::vector<double>(6, 1.0));
+  EXPECT_EQ(FScores(Compare(MeshOf({kGround, kRoad, kRoof, cellar})).all), std::vector<double>(6, 1.0));
 }
 
-TEST(CompareSurfaces, InventedSurfaceInTheAirIsWrong) {
-  Place place;
+TEST_F(CompareSurfacesTest, InventedSurfaceInTheAirIsWrong) {
   const Plate invented{-10, -8, 10, 8, 9.0};
-  const SurfaceComparison comparison = place.Compare(MeshOf({kGround, kRoad, kRoof, invented}));
+  const SurfaceComparison comparison = Compare(MeshOf({kGround, kRoad, kRoof, invented}));
   EXPECT_NEAR(comparison.all.f_scores[2].precision, 0.5, 0.01);
   EXPECT_EQ(comparison.all.f_scores[2].recall, 1.0);
 }
 
-TEST(CompareSurfaces, WaterAndPlacesOutsideTheSceneDoNotCount) {
-  Place place;
-  place.boxes = {{{-10, -8, -5}, {5, 8, 20}, 2.0}};  // the eastern half of the roof is outside
+TEST_F(CompareSurfacesTest, WaterAndPlacesOutsideTheSceneDoNotCount) {
+  boxes = {{{-10, -8, -5}, {5, 8, 20}, 2.0}};  // the eastern half of the roof is outside
   const Plate pond{-10, -8, -8, 8, 0.05};
-  AddPlate(pond, SurfaceClass::kWater, &place.truth);
+  AddPlate(pond, SurfaceClass::kWater, &truth);
   const Plate half_roof{0, -8, 5, 8, 3.0}, dry{-8, -8, -4, 8, 0.0};
-  const SurfaceComparison without = place.Compare(MeshOf({dry, kRoad, half_roof}));
+  const SurfaceComparison without = Compare(MeshOf({dry, kRoad, half_roof}));
   EXPECT_EQ(FScores(without.all), std::vector<double>(6, 1.0));
-  const SurfaceComparison with = place.Compare(MeshOf({dry, kRoad, half_roof, pond, {5, -8, 10, 8, 3.25}}));
+  const SurfaceComparison with = Compare(MeshOf({dry, kRoad, half_roof, pond, {5, -8, 10, 8, 3.25}}));
   EXPECT_EQ(FScores(with.all), std::vector<double>(6, 1.0));
 }
 
-TEST(CompareSurfaces, TwoPhotosMustSeeIt) {
-  Place place;
-  place.training = {photos::NadirView(0, 0, 100)};
-  const SurfaceComparison one = place.Compare(MeshOf({kGround, kRoad, kRoof}));
+TEST_F(CompareSurfacesTest, TwoPhotosMustSeeIt) {
+  training = {photos::NadirView(0, 0, 100)};
+  const SurfaceComparison one = Compare(MeshOf({kGround, kRoad, kRoof}));
   EXPECT_EQ(one.all.true_samples, 0);
   EXPECT_EQ(one.all.mesh_samples, 0);
   EXPECT_TRUE(std::isnan(one.all.f_scores[0].f));
@@ -146,22 +139,20 @@ TEST(CompareSurfaces, TwoPhotosMustSeeIt) {
   EXPECT_LT(ClassOf(roofed.Compare(MeshOf({kRoof})), "ground").true_samples, 2500);  // of 32000: what the photos see under its edges
 }
 
-TEST(CompareSurfaces, NothingToCompareIsNotAnError) {
-  Place place;
-  const SurfaceComparison none = place.Compare(SurfaceMesh());
+TEST_F(CompareSurfacesTest, NothingToCompareIsNotAnError) {
+  const SurfaceComparison none = Compare(SurfaceMesh());
   EXPECT_EQ(none.all.mesh_samples, 0);
   EXPECT_EQ(none.all.f_scores[0].recall, 0.0);
-  place.truth = {};
-  place.training.clear();
-  place.boxes.clear();
-  EXPECT_EQ(place.Compare(MeshOf({kGround})).all.true_samples, 0);
+  truth = {};
+  training.clear();
+  boxes.clear();
+  EXPECT_EQ(Compare(MeshOf({kGround})).all.true_samples, 0);
 }
 
-TEST(CompareSurfaces, SameForAnyNumberOfThreads) {
-  Place place;
+TEST_F(CompareSurfacesTest, SameForAnyNumberOfThreads) {
   base::ThreadPool one(1);
   const SurfaceMesh mesh = MeshOf({Moved(kGround, 0.099), {-4, -8, 0, 8, 0.1}, {0, -8, 7, 8, 3.05}});
-  const SurfaceComparison a = place.Compare(mesh), b = place.Compare(mesh, &one);
+  const SurfaceComparison a = Compare(mesh), b = Compare(mesh, &one);
   EXPECT_EQ(FScores(a.all), FScores(b.all));
   EXPECT_EQ(a.all.accuracy_median_m, b.all.accuracy_median_m);
 }

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/geo/enu_frame.h"

@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/errors.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::prepare::input {
 namespace {
+
+using ScaleToPhotosTest = InTemporaryFolder;
 
 namespace fs = std::filesystem;
 
@@ -58,22 +59,21 @@ TEST(IsScaledSize, AgreesToAPixelOfTheSmallerOne) {
   EXPECT_FALSE(IsScaledSize(0, 0, 10, 10));
 }
 
-TEST(ScaleToPhotos, LeavesModelsOfTheSameSizeAlone) {
-  const TemporaryFolder folder;
+TEST_F(ScaleToPhotosTest, LeavesModelsOfTheSameSizeAlone) {
   SizedModel made;
   const survey::ColmapModel before = made.model;
-  EXPECT_EQ(ScaleToPhotos(FindPhotos(made.model, made.photos), made.photos, folder / "model", true, folder / "scaled", made.model), folder / "model");
+  EXPECT_EQ(ScaleToPhotos(FindPhotos(made.model, made.photos), made.photos, folder_ / "model", true, folder_ / "scaled", made.model),
+            folder_ / "model");
   EXPECT_EQ(made.model.cameras.at(1).params, before.cameras.at(1).params);
-  EXPECT_FALSE(fs::exists(folder / "scaled"));
+  EXPECT_FALSE(fs::exists(folder_ / "scaled"));
 }
 
-TEST(ScaleToPhotos, ScalesCamerasAndObservations) {
-  const TemporaryFolder folder;
+TEST_F(ScaleToPhotosTest, ScalesCamerasAndObservations) {
   SizedModel made;
-  survey::WriteColmapBinary(made.model, made.observations, folder / "model");
+  survey::WriteColmapBinary(made.model, made.observations, folder_ / "model");
   for (size_t i = 0; i < 3; ++i) made.SetSize(i, 1000, 750);
-  const fs::path scaled = ScaleToPhotos(FindPhotos(made.model, made.photos), made.photos, folder / "model", true, folder / "scaled", made.model);
-  EXPECT_EQ(scaled, folder / "scaled");
+  const fs::path scaled = ScaleToPhotos(FindPhotos(made.model, made.photos), made.photos, folder_ / "model", true, folder_ / "scaled", made.model);
+  EXPECT_EQ(scaled, folder_ / "scaled");
   EXPECT_EQ(made.model.cameras.size(), 2U);
   EXPECT_EQ(made.model.cameras.at(1).width, 1000);
   EXPECT_EQ(made.model.cameras.at(1).params, (std::vector<double>{750.0, 502.5, 372.5, -0.1, 0.05}));
@@ -83,40 +83,38 @@ TEST(ScaleToPhotos, ScalesCamerasAndObservations) {
   EXPECT_EQ(read.at(4).front().pixel, Eigen::Vector2d(200.0, 100.0));
   EXPECT_EQ(survey::ReadColmapModel(scaled).points.front().image_ids.size(), 5U);
   // Then all can be used.
-  EXPECT_EQ(MatchPhotos(made.model, made.photos, folder / "model", folder / "photos").size(), 5U);
+  EXPECT_EQ(MatchPhotos(made.model, made.photos, folder_ / "model", folder_ / "photos").size(), 5U);
 }
 
-TEST(ScaleToPhotos, PhotosOfOneCameraMayHaveSeveralSizes) {
-  const TemporaryFolder folder;
+TEST_F(ScaleToPhotosTest, PhotosOfOneCameraMayHaveSeveralSizes) {
   SizedModel made;
   made.SetSize(1, 8000, 6000);
   made.SetSize(2, 4000, 2000);  // cropped
-  EXPECT_EQ(ScaleToPhotos(FindPhotos(made.model, made.photos), made.photos, folder / "model", false, folder / "scaled", made.model),
-            folder / "model");
+  EXPECT_EQ(ScaleToPhotos(FindPhotos(made.model, made.photos), made.photos, folder_ / "model", false, folder_ / "scaled", made.model),
+            folder_ / "model");
   EXPECT_EQ(made.model.cameras.size(), 3U);
   EXPECT_EQ(made.model.images[0].camera_id, 1U);
   EXPECT_EQ(made.model.images[1].camera_id, 3U);
   EXPECT_EQ(made.model.cameras.at(3).params[0], 6000.0);
   EXPECT_EQ(made.model.images[2].camera_id, 1U);
   EXPECT_EQ(made.model.cameras.at(1).width, 4000);
-  const FileOfImage usable = MatchPhotos(made.model, made.photos, folder / "model", folder / "photos");
+  const FileOfImage usable = MatchPhotos(made.model, made.photos, folder_ / "model", folder_ / "photos");
   EXPECT_EQ(usable.size(), 4U);
   EXPECT_FALSE(usable.contains(3));
 }
 
-TEST(ScaleToPhotos, ModelsWithoutObservationsKeepTheirFolder) {
-  const TemporaryFolder folder;
+TEST_F(ScaleToPhotosTest, ModelsWithoutObservationsKeepTheirFolder) {
   SizedModel made;
   for (size_t i = 0; i < 3; ++i) made.SetSize(i, 2000, 1500);
   // None can be read there.
-  EXPECT_EQ(ScaleToPhotos(FindPhotos(made.model, made.photos), made.photos, folder / "absent", true, folder / "scaled", made.model),
-            folder / "absent");
+  EXPECT_EQ(ScaleToPhotos(FindPhotos(made.model, made.photos), made.photos, folder_ / "absent", true, folder_ / "scaled", made.model),
+            folder_ / "absent");
   EXPECT_EQ(made.model.cameras.at(1).width, 2000);
   // Tracks whose observations are missing are left out.
   SizedModel bare;
-  survey::WriteColmapText({bare.model.cameras, bare.model.images, {}}, folder / "bare");
+  survey::WriteColmapText({bare.model.cameras, bare.model.images, {}}, folder_ / "bare");
   for (size_t i = 0; i < 3; ++i) bare.SetSize(i, 2000, 1500);
-  const fs::path scaled = ScaleToPhotos(FindPhotos(bare.model, bare.photos), bare.photos, folder / "bare", true, folder / "scaled", bare.model);
+  const fs::path scaled = ScaleToPhotos(FindPhotos(bare.model, bare.photos), bare.photos, folder_ / "bare", true, folder_ / "scaled", bare.model);
   EXPECT_TRUE(survey::ReadColmapModel(scaled).points.front().image_ids.empty());
 }
 

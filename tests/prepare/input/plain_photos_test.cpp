@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
-#include <functional>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/errors.h"
-#include "prepare/models/ply_points.h"
 #include "prepare/models/read_model.h"
 #include "tests/prepare/models/made_models.h"
 #include "tests/support/error_of.h"

@@ -11,7 +11,6 @@
 #include "tests/prepare/poses/made_photos.h"
 #include "tests/support/error_of.h"
 #include "tests/support/made_database.h"
-#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::prepare::poses {
 namespace {

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "tests/prepare/poses/made_photos.h"
@@ -100,9 +99,7 @@ TEST_F(MatchPairsTest, GoesOnAfterTheLastFinishedChunk) {
 
 TEST_F(MatchPairsTest, StopsWhenAsked) {
   FeatureStore features = Store();
-  base::RequestCancel();
-  EXPECT_THROW(MatchPairs(job_, features, AllPairs(kPhotos), threads_), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { MatchPairs(job_, features, AllPairs(kPhotos), threads_); });
   EXPECT_TRUE(features.database().ReadMatchedPairs(0).empty());
   MatchPairs(job_, features, AllPairs(kPhotos), threads_);
   ExpectRight(features, AllPairs(kPhotos));

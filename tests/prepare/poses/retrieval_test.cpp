@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "tests/prepare/poses/made_photos.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::prepare::poses {
 namespace {
@@ -117,9 +116,7 @@ TEST(LearnWords, AreMeansOfWhatIsNearest) {
     // One sample is sqrt(128 * 10) = 36 away on average.
     EXPECT_LT(nearest, 30 * 30);
   }
-  base::RequestCancel();
-  EXPECT_THROW(LearnWords(sample, options, threads), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { LearnWords(sample, options, threads); });
 }
 
 }  // namespace

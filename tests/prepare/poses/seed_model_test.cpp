@@ -5,7 +5,6 @@
 #include <array>
 #include <map>
 
-#include "core/base/log.h"
 #include "core/survey/colmap_model.h"
 #include "tests/prepare/poses/fake_colmap.h"
 #include "tests/prepare/poses/seed/made_survey.h"

@@ -9,7 +9,6 @@
 #include <map>
 
 #include "core/base/child_process.h"
-#include "core/base/file.h"
 #include "core/base/order_statistics.h"
 #include "core/linear/linear.h"
 #include "prepare/poses/pose_pairs.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/file.h"
 #include "surface/files/glb_writer.h"
 #include "surface/files/surface_files.h"
 #include "tests/support/error_of.h"
@@ -54,7 +53,7 @@ TEST(Glb, PositionsComeBackWithYUp) {
 }
 
 TEST(Glb, BoundsAreExactAndPiecesAligned) {
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
+  const MapFrame frame = TorontoFrame();
   const Glb glb = WriteGlb(frame, {SampleTile({0, 0, 0}), SampleTile({0, 1, 0}, 5)});
   ASSERT_EQ(glb.json["meshes"][0]["primitives"].size(), 2U);
   for (size_t i = 0; i < 2; ++i) {
@@ -73,7 +72,7 @@ TEST(Glb, BoundsAreExactAndPiecesAligned) {
 }
 
 TEST(Glb, MaterialsShowTheTextureWithoutLight) {
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
+  const MapFrame frame = TorontoFrame();
   const TexturedTile tile = SampleTile({0, 0, 0});
   TexturedTile other = SampleTile({0, 1, 0});
   other.atlas_jpeg.push_back(0);  // bytes after the end of a JPEG do no harm, but tell the two apart
@@ -109,7 +108,7 @@ TEST(Glb, IndicesAreShortWhileTheyFit) {
 }
 
 TEST(Glb, BadTrianglesAndNormalsAreMended) {
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
+  const MapFrame frame = TorontoFrame();
   TexturedTile tile = SampleTile({0, 0, 0});
   const size_t good = tile.triangle.size();
   tile.triangle.push_back({0, 0, 1});
@@ -128,7 +127,7 @@ TEST(Glb, BadTrianglesAndNormalsAreMended) {
 }
 
 TEST(Glb, TilesWithoutTextureAreWritten) {
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
+  const MapFrame frame = TorontoFrame();
   TexturedTile tile = SampleTile({0, 0, 0});
   tile.atlas_jpeg.clear();
   const Glb glb = WriteGlb(frame, {tile});
@@ -138,7 +137,7 @@ TEST(Glb, TilesWithoutTextureAreWritten) {
 
 TEST(Glb, TooLargeFilesAreRefusedWithAdvice) {
   const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
+  const MapFrame frame = TorontoFrame();
   const TexturedTile tile = CleanTile(SampleTile({0, 0, 0}));
   const MapVertices in_map = VerticesInMap(tile, frame);
   {

@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 
-#include "core/base/cancel.h"
 #include "core/base/file.h"
 #include "surface/files/surface_files.h"
 #include "tests/support/error_of.h"
@@ -151,9 +150,7 @@ TEST(LasClasses, RefuseDamagedFiles) {
 TEST(LasClasses, StopWhenAsked) {
   const Cloud cloud(100);
   const auto before = ContentsOf(cloud.folder.path());
-  base::RequestCancel();
-  EXPECT_THROW(cloud.Rewrite(), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { cloud.Rewrite(); });
   EXPECT_TRUE(ContentsOf(cloud.folder.path()) == before);
 }
 

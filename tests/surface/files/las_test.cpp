@@ -6,11 +6,12 @@
 
 #include "core/base/file.h"
 #include "surface/files/surface_files.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/surface/files/sample_surface.h"
 
 namespace skyquilt::surface {
 namespace {
+
+using Las = InToronto;
 
 constexpr FileSelection kOnlyCloud = {.glb = false, .obj = false, .ply = false, .cloud = true, .tiles = false};
 
@@ -34,14 +35,12 @@ struct Las {
   std::string Wkt() const { return bytes.substr(375 + 54, At<uint16_t>(375 + 20)); }
 };
 
-TEST(Las, HeaderIsThatOfVersion14) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
+TEST_F(Las, HeaderIsThatOfVersion14) {
   const std::vector<CloudPoint> points = SamplePoints(100);
-  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder.path());
+  SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path());
   files.AddPoints(points);
   files.Close();
-  const Las las(folder / "cloud.las");
+  const Las las(folder_ / "cloud.las");
   EXPECT_EQ(las.bytes.substr(0, 4), "LASF");
   EXPECT_EQ(las.At<uint16_t>(6), 16) << "WKT, GPS week time";
   EXPECT_EQ(las.At<uint8_t>(24), 1);
@@ -65,7 +64,7 @@ TEST(Las, HeaderIsThatOfVersion14) {
   EXPECT_NE(las.Wkt().find("AUTHORITY[\"EPSG\",\"32617\"]"), std::string::npos);
 }
 
-TEST(Las, PointsComeBackToAMillimetre) {
+TEST_F(Las, PointsComeBackToAMillimetre) {
   for (const geo::Geodetic& origin : DifficultOrigins()) {
     const TemporaryFolder folder;
     const MapFrame frame(SampleInfo(origin));
@@ -95,24 +94,22 @@ TEST(Las, PointsComeBackToAMillimetre) {
   }
 }
 
-TEST(Las, SplitsAboveTheLimitIntoCompleteFiles) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
+TEST_F(Las, SplitsAboveTheLimitIntoCompleteFiles) {
   const std::vector<CloudPoint> points = SamplePoints(25);
-  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder.path(), 10);
+  SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path(), 10);
   files.AddPoints(std::span(points).first(7));
   files.AddPoints(std::span(points).subspan(7));
   const std::vector<WrittenFile> table = files.Close();
-  EXPECT_EQ(NamesIn(folder.path()),
+  EXPECT_EQ(NamesIn(folder_.path()),
             (std::vector<std::string>{"cloud.ply", "cloud_1.las", "cloud_2.las", "cloud_3.las", "georeference.json", "offset.txt"}));
   size_t next = 0;
   for (int part = 1; part <= 3; ++part) {
-    const Las las(folder / ("cloud_" + std::to_string(part) + ".las"));
+    const Las las(folder_ / ("cloud_" + std::to_string(part) + ".las"));
     EXPECT_EQ(las.count(), part == 3 ? 5U : 10U);
     EXPECT_EQ(las.bytes.size(), las.PointOffset(las.count()));
     double min_z = HUGE_VAL;
     for (size_t i = 0; i < las.count(); ++i, ++next) {
-      EXPECT_LT((las.Point(i) - frame.MapFromEnu(points[next].position)).cwiseAbs().maxCoeff(), 0.00051);
+      EXPECT_LT((las.Point(i) - frame_.MapFromEnu(points[next].position)).cwiseAbs().maxCoeff(), 0.00051);
       min_z = std::min(min_z, las.Point(i).z());
     }
     EXPECT_EQ(las.At<double>(219), min_z) << "bounds of this part alone";
@@ -122,37 +119,32 @@ TEST(Las, SplitsAboveTheLimitIntoCompleteFiles) {
   EXPECT_EQ(table[0].detail, "25 points in 3 files");
 }
 
-TEST(Las, ExactlyTheLimitIsOneFile) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
-  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder.path(), 10);
+TEST_F(Las, ExactlyTheLimitIsOneFile) {
+  SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path(), 10);
   files.AddPoints(SamplePoints(10));
   files.Close();
-  EXPECT_EQ(Las(folder / "cloud.las").count(), 10U);
+  EXPECT_EQ(Las(folder_ / "cloud.las").count(), 10U);
 }
 
-TEST(Las, PointsThatAreNotFiniteAreLeftOut) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}));
+TEST_F(Las, PointsThatAreNotFiniteAreLeftOut) {
   std::vector<CloudPoint> points = SamplePoints(3);
   points[1].position.y() = std::numeric_limits<double>::quiet_NaN();
   points[2].normal.setZero();
-  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder.path());
+  SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path());
   files.AddPoints(points);
   files.Close();
-  EXPECT_EQ(Las(folder / "cloud.las").count(), 2U);
+  EXPECT_EQ(Las(folder_ / "cloud.las").count(), 2U);
 }
 
-TEST(Las, LocalCloudsSaySo) {
-  const TemporaryFolder folder;
+TEST_F(Las, LocalCloudsSaySo) {
   const MapFrame frame(SampleInfo({0.0, 0.0, 0.0}, false));
-  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder.path());
+  SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder_.path());
   files.AddPoints(SamplePoints(3));
   files.Close();
-  EXPECT_NE(Las(folder / "cloud.las").Wkt().find("LOCAL_CS"), std::string::npos);
+  EXPECT_NE(Las(folder_ / "cloud.las").Wkt().find("LOCAL_CS"), std::string::npos);
 }
 
-TEST(Las, NamesWhatHeightsAreAbove) {
+TEST_F(Las, NamesWhatHeightsAreAbove) {
   for (const geo::Vertical vertical : {geo::Vertical::kAsTagged, geo::Vertical::kEgm96}) {
     const TemporaryFolder folder;
     const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}), vertical);

@@ -9,13 +9,18 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "surface/map_frame.h"
 #include "surface/mesh.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::surface {
 
 inline constexpr double kSampleTile_m = 64.0;
 
 scene::SceneInfo SampleInfo(const geo::Geodetic& origin, bool georeferenced = true);
+inline MapFrame TorontoFrame() {
+  return MapFrame(SampleInfo({43.64, -79.39, 100.0}));
+}
 // Places where frames go wrong: equator, high latitude, both poles, both sides of the date line, below sea level.
 std::vector<geo::Geodetic> DifficultOrigins();
 
@@ -44,6 +49,11 @@ struct Glb {
   std::vector<std::vector<double>> Accessor(size_t index) const;
   const nlohmann::json& primitive(size_t index) const { return json["meshes"][0]["primitives"][index]; }
   std::string Picture(size_t image) const;
+};
+
+class InToronto : public InTemporaryFolder {
+ protected:
+  const MapFrame frame_ = TorontoFrame();
 };
 
 std::vector<std::string> Lines(const std::string& text);

@@ -1,24 +1,22 @@
 #include "surface/files/surface_files.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <fstream>
 
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "surface/files/file_writer.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/limited_file_size.h"
 #include "tests/surface/files/sample_surface.h"
 
 namespace skyquilt::surface {
 namespace {
 
-using Names = std::vector<std::string>;
+using SurfaceFilesTest = InToronto;
 
-const geo::Geodetic kToronto = {43.64, -79.39, 100.0};
+using Names = std::vector<std::string>;
 
 void WriteAll(const MapFrame& frame, const std::filesystem::path& folder, std::vector<WrittenFile>* table = nullptr) {
   SurfaceFiles files(frame, {}, kSampleTile_m, folder);
@@ -28,19 +26,18 @@ void WriteAll(const MapFrame& frame, const std::filesystem::path& folder, std::v
   if (table != nullptr) *table = rows;
 }
 
-TEST(SurfaceFiles, TableTellsWhatWasWritten) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceFilesTest, TableTellsWhatWasWritten) {
   std::vector<WrittenFile> table;
-  WriteAll(MapFrame(SampleInfo(kToronto)), folder.path(), &table);
+  WriteAll(TorontoFrame(), folder_.path(), &table);
   ASSERT_EQ(table.size(), 7U);
   int64_t bytes = 0;
   for (const WrittenFile& row : table) {
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / row.file)) << row.file;
+    EXPECT_TRUE(std::filesystem::exists(folder_.path() / row.file)) << row.file;
     EXPECT_EQ(row.vertical, "WGS84 ellipsoid (EPSG:4979)");
     bytes += row.bytes;
   }
   int64_t on_disk = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path())) {
     if (entry.is_regular_file()) on_disk += static_cast<int64_t>(entry.file_size());
   }
   EXPECT_EQ(bytes, on_disk);
@@ -54,9 +51,9 @@ TEST(SurfaceFiles, TableTellsWhatWasWritten) {
   EXPECT_EQ(table[5].detail, "10 tiles in 3 levels");
 }
 
-TEST(SurfaceFiles, SameInputGivesTheSameBytes) {
+TEST_F(SurfaceFilesTest, SameInputGivesTheSameBytes) {
   const TemporaryFolder one, other;
-  const MapFrame frame(SampleInfo(kToronto));
+  const MapFrame frame = TorontoFrame();
   WriteAll(frame, one.path());
   WriteAll(frame, other.path());
   for (const std::string& name : NamesIn(one.path())) {
@@ -65,131 +62,105 @@ TEST(SurfaceFiles, SameInputGivesTheSameBytes) {
   }
 }
 
-TEST(SurfaceFiles, LeaveNothingWithoutClose) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo(kToronto));
+TEST_F(SurfaceFilesTest, LeaveNothingWithoutClose) {
   {
-    SurfaceFiles files(frame, {}, kSampleTile_m, folder.path(), 100);
+    SurfaceFiles files(frame_, {}, kSampleTile_m, folder_.path(), 100);
     for (const TexturedTile& tile : SamplePyramid()) files.Add(tile);
     files.AddPoints(SamplePoints(500));
-    for (const std::string& name : NamesIn(folder.path())) EXPECT_TRUE(name.ends_with(".partial")) << name;
+    for (const std::string& name : NamesIn(folder_.path())) EXPECT_TRUE(name.ends_with(".partial")) << name;
   }
-  EXPECT_EQ(NamesIn(folder.path()), Names{});
+  EXPECT_EQ(NamesIn(folder_.path()), Names{});
 }
 
-TEST(SurfaceFiles, AnOldSurfaceStaysUntilTheNewOneIsComplete) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo(kToronto));
-  WriteAll(frame, folder.path());
-  const Names before = NamesIn(folder.path());
-  const std::string old_mesh = base::ReadFile(folder / "mesh.glb");
+TEST_F(SurfaceFilesTest, AnOldSurfaceStaysUntilTheNewOneIsComplete) {
+  WriteAll(frame_, folder_.path());
+  const Names before = NamesIn(folder_.path());
+  const std::string old_mesh = base::ReadFile(folder_ / "mesh.glb");
   {
-    SurfaceFiles files(frame, {}, kSampleTile_m, folder.path());
+    SurfaceFiles files(frame_, {}, kSampleTile_m, folder_.path());
     files.Add(SampleTile({0, 7, 7}));
   }
-  EXPECT_EQ(NamesIn(folder.path()), before);
-  EXPECT_EQ(base::ReadFile(folder / "mesh.glb"), old_mesh);
+  EXPECT_EQ(NamesIn(folder_.path()), before);
+  EXPECT_EQ(base::ReadFile(folder_ / "mesh.glb"), old_mesh);
 }
 
-TEST(SurfaceFiles, ANewSurfaceReplacesAllOfTheOldOne) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo(kToronto));
+TEST_F(SurfaceFilesTest, ANewSurfaceReplacesAllOfTheOldOne) {
   {
-    SurfaceFiles files(frame, {}, kSampleTile_m, folder.path(), 100);
+    SurfaceFiles files(frame_, {}, kSampleTile_m, folder_.path(), 100);
     for (const TexturedTile& tile : SamplePyramid()) files.Add(tile);
     files.AddPoints(SamplePoints(500));
     files.Close();
   }
   // Of a process that was killed, and of other parts of the program.
-  std::filesystem::create_directory(folder / "tiles.partial");
+  std::filesystem::create_directory(folder_ / "tiles.partial");
   for (const char* name : {"mesh.glb.bin.partial", "mesh_0_9_9.jpg.partial", "dtm.tif", "mesh_notes.jpg", "cloud_of_mine.las"}) {
-    std::ofstream(folder / name) << "x";
+    std::ofstream(folder_ / name) << "x";
   }
   {
-    SurfaceFiles files(frame, {.glb = true, .obj = true, .ply = false, .cloud = false, .tiles = true}, kSampleTile_m, folder.path());
+    SurfaceFiles files(frame_, {.glb = true, .obj = true, .ply = false, .cloud = false, .tiles = true}, kSampleTile_m, folder_.path());
     files.Add(SampleTile({0, 7, 7}));
     files.Close();
   }
-  EXPECT_EQ(NamesIn(folder.path()), (Names{"cloud_of_mine.las", "dtm.tif", "georeference.json", "mesh.glb", "mesh.mtl", "mesh.obj", "mesh_0_7_7.jpg",
-                                           "mesh_notes.jpg", "offset.txt", "tiles"}));
-  EXPECT_EQ(NamesIn(folder / "tiles"), (Names{"0_7_7.glb", "tileset.json"}));
+  EXPECT_EQ(NamesIn(folder_.path()), (Names{"cloud_of_mine.las", "dtm.tif", "georeference.json", "mesh.glb", "mesh.mtl", "mesh.obj", "mesh_0_7_7.jpg",
+                                            "mesh_notes.jpg", "offset.txt", "tiles"}));
+  EXPECT_EQ(NamesIn(folder_ / "tiles"), (Names{"0_7_7.glb", "tileset.json"}));
 }
 
-TEST(SurfaceFiles, AnEmptySurfaceHasOnlyItsGeoReference) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo(kToronto, false));
-  SurfaceFiles files(frame, {}, kSampleTile_m, folder.path());
+TEST_F(SurfaceFilesTest, AnEmptySurfaceHasOnlyItsGeoReference) {
+  const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}, false));
+  SurfaceFiles files(frame, {}, kSampleTile_m, folder_.path());
   files.Add(TexturedTile());
   files.AddPoints({});
   EXPECT_TRUE(files.Close().empty());
-  EXPECT_EQ(NamesIn(folder.path()), Names{"georeference.json"});
+  EXPECT_EQ(NamesIn(folder_.path()), Names{"georeference.json"});
 }
 
-TEST(SurfaceFiles, OnlyWhatIsSelectedIsWritten) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo(kToronto));
-  SurfaceFiles files(frame, {.glb = false, .obj = false, .ply = true, .cloud = false, .tiles = false}, kSampleTile_m, folder.path());
+TEST_F(SurfaceFilesTest, OnlyWhatIsSelectedIsWritten) {
+  SurfaceFiles files(frame_, {.glb = false, .obj = false, .ply = true, .cloud = false, .tiles = false}, kSampleTile_m, folder_.path());
   files.Add(SampleTile({0, 0, 0}));
   files.AddPoints(SamplePoints(5));
   files.Close();
-  EXPECT_EQ(NamesIn(folder.path()), (Names{"georeference.json", "mesh.ply", "offset.txt"}));
+  EXPECT_EQ(NamesIn(folder_.path()), (Names{"georeference.json", "mesh.ply", "offset.txt"}));
 }
 
-TEST(SurfaceFiles, GeoReferenceTellsHowToReadTheRest) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo(kToronto));
-  WriteAll(frame, folder.path());
-  const auto json = base::ParseJson(base::ReadFile(folder / "georeference.json"));
+TEST_F(SurfaceFilesTest, GeoReferenceTellsHowToReadTheRest) {
+  WriteAll(frame_, folder_.path());
+  const auto json = base::ParseJson(base::ReadFile(folder_ / "georeference.json"));
   EXPECT_EQ(json["crs"], "EPSG:32617");
-  EXPECT_EQ(json["offset"].get<std::vector<double>>(), std::vector<double>(frame.offset().data(), frame.offset().data() + 3));
+  EXPECT_EQ(json["offset"].get<std::vector<double>>(), std::vector<double>(frame_.offset().data(), frame_.offset().data() + 3));
   EXPECT_EQ(json["origin"]["latitude_deg"], 43.64);
   EXPECT_EQ(json["vertical"], "WGS84 ellipsoid (EPSG:4979)");
-  const Names lines = Lines(base::ReadFile(folder / "offset.txt"));
+  const Names lines = Lines(base::ReadFile(folder_ / "offset.txt"));
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(lines[0], "WGS84 UTM 17N");
-  EXPECT_EQ(lines[1], std::to_string(std::lround(frame.offset().x())) + " " + std::to_string(std::lround(frame.offset().y())));
+  EXPECT_EQ(lines[1], std::to_string(std::lround(frame_.offset().x())) + " " + std::to_string(std::lround(frame_.offset().y())));
 }
 
-TEST(SurfaceFiles, PolarZonesAreNamedByTheirCode) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceFilesTest, PolarZonesAreNamedByTheirCode) {
   const MapFrame frame(SampleInfo({-90.0, 0.0, 2800.0}));
-  WriteAll(frame, folder.path());
-  EXPECT_EQ(Lines(base::ReadFile(folder / "offset.txt")).at(0), "EPSG:32761");
+  WriteAll(frame, folder_.path());
+  EXPECT_EQ(Lines(base::ReadFile(folder_ / "offset.txt")).at(0), "EPSG:32761");
 }
 
-TEST(SurfaceFiles, AFolderThatCannotBeWrittenIsNamed) {
-  const TemporaryFolder folder;
-  std::ofstream(folder / "file") << "x";
-  const MapFrame frame(SampleInfo(kToronto));
-  const std::string message = InputErrorOf([&] { SurfaceFiles(frame, {}, kSampleTile_m, folder / "file" / "inside"); });
+TEST_F(SurfaceFilesTest, AFolderThatCannotBeWrittenIsNamed) {
+  std::ofstream(folder_ / "file") << "x";
+  const std::string message = InputErrorOf([&] { SurfaceFiles(frame_, {}, kSampleTile_m, folder_ / "file" / "inside"); });
   EXPECT_NE(message.find("file"), std::string::npos) << message;
 }
 
-// A limit on the size of files stands for a full disk: the system refuses to write in the same way.
-TEST(SurfaceFiles, AFullDiskNamesTheFileAndLeavesNothing) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo(kToronto));
-  rlimit before = {};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  std::string message;
-  {
-    SurfaceFiles files(frame, {.glb = true, .obj = false, .ply = false, .cloud = false, .tiles = false}, kSampleTile_m, folder.path());
+TEST_F(SurfaceFilesTest, AFullDiskNamesTheFileAndLeavesNothing) {
+  const std::string message = InputErrorOf([&] {
+    SurfaceFiles files(frame_, {.glb = true, .obj = false, .ply = false, .cloud = false, .tiles = false}, kSampleTile_m, folder_.path());
     files.Add(SampleTile({0, 0, 0}));
-    const rlimit small = {1000, before.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
-    message = InputErrorOf([&] { files.Close(); });
-    setrlimit(RLIMIT_FSIZE, &before);
-  }
-  std::signal(SIGXFSZ, old_handler);
+    const LimitedFileSize limit(1000);
+    files.Close();
+  });
   EXPECT_NE(message.find("mesh.glb"), std::string::npos) << message;
-  EXPECT_EQ(NamesIn(folder.path()), Names{});
+  EXPECT_EQ(NamesIn(folder_.path()), Names{});
 }
 
-TEST(SurfaceFiles, BrokenTilesAreBugs) {
-  const TemporaryFolder folder;
-  const MapFrame frame(SampleInfo(kToronto));
-  SurfaceFiles files(frame, {}, kSampleTile_m, folder.path());
+TEST_F(SurfaceFilesTest, BrokenTilesAreBugs) {
+  SurfaceFiles files(frame_, {}, kSampleTile_m, folder_.path());
   TexturedTile tile = SampleTile({0, 0, 0});
   tile.triangle.push_back({0, 1, 9999});
   EXPECT_THROW(files.Add(tile), std::logic_error);

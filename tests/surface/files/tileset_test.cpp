@@ -11,11 +11,13 @@
 #include "core/geo/geoid.h"
 #include "surface/files/earth_place.h"
 #include "surface/files/surface_files.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 #include "tests/surface/files/sample_surface.h"
 
 namespace skyquilt::surface {
 namespace {
+
+using Tileset = InTemporaryFolder;
 
 using nlohmann::json;
 
@@ -67,7 +69,7 @@ void Visit(const json& tile, const std::function<void(const json&)>& action) {
   for (const json& child : tile["children"]) Visit(child, action);
 }
 
-TEST(Tileset, VerticesStandWhereTheyAreOnEarth) {
+TEST_F(Tileset, VerticesStandWhereTheyAreOnEarth) {
   for (const geo::Geodetic& origin : DifficultOrigins()) {
     const TemporaryFolder folder;
     const TexturedTile tile = SampleTile({0, 30, -20});  // 2 km from the origin
@@ -86,7 +88,7 @@ TEST(Tileset, VerticesStandWhereTheyAreOnEarth) {
 }
 
 // EPSG:4978 has heights above the ellipsoid only, whatever the survey and products.vertical have.
-TEST(Tileset, HeightsAboveTheGeoidAreRaisedToTheEllipsoid) {
+TEST_F(Tileset, HeightsAboveTheGeoidAreRaisedToTheEllipsoid) {
   for (const geo::Geodetic& origin : DifficultOrigins()) {
     const TemporaryFolder folder;
     const TexturedTile tile = SampleTile({0, 30, -20});  // 2 km from the origin
@@ -114,10 +116,9 @@ TEST(Tileset, HeightsAboveTheGeoidAreRaisedToTheEllipsoid) {
   }
 }
 
-TEST(Tileset, OfTheEllipsoidStandsInItsSurveyAlready) {
-  const TemporaryFolder folder;
-  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0}), geo::Vertical::kEgm96), {SampleTile({0, 0, 0})}, folder.path());
-  auto tileset = base::ParseOrderedJson(base::ReadFile(folder / "tiles/tileset.json"));
+TEST_F(Tileset, OfTheEllipsoidStandsInItsSurveyAlready) {
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0}), geo::Vertical::kEgm96), {SampleTile({0, 0, 0})}, folder_.path());
+  auto tileset = base::ParseOrderedJson(base::ReadFile(folder_ / "tiles/tileset.json"));
   const auto before = tileset;
   EXPECT_FALSE(StandInSurvey(&tileset));
   EXPECT_EQ(tileset, before);
@@ -125,7 +126,7 @@ TEST(Tileset, OfTheEllipsoidStandsInItsSurveyAlready) {
   EXPECT_FALSE(StandInSurvey(&empty));
 }
 
-TEST(Tileset, ContentsStandUpright) {
+TEST_F(Tileset, ContentsStandUpright) {
   for (const geo::Geodetic& origin : DifficultOrigins()) {
     const TemporaryFolder folder;
     TexturedTile tile = SampleTile({0, 0, 0});
@@ -141,11 +142,10 @@ TEST(Tileset, ContentsStandUpright) {
   }
 }
 
-TEST(Tileset, IsAQuadtreeOfAllTilesWithGrowingBoxesAndErrors) {
-  const TemporaryFolder folder;
+TEST_F(Tileset, IsAQuadtreeOfAllTilesWithGrowingBoxesAndErrors) {
   const std::vector<TexturedTile> tiles = SamplePyramid();
-  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), tiles, folder.path());
-  const json tileset = ReadTileset(folder.path());
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), tiles, folder_.path());
+  const json tileset = ReadTileset(folder_.path());
   EXPECT_EQ(tileset["asset"]["version"], "1.1");
   EXPECT_EQ(tileset["root"]["refine"], "REPLACE");
   EXPECT_GE(tileset["geometricError"].get<double>(), tileset["root"]["geometricError"].get<double>());
@@ -158,7 +158,7 @@ TEST(Tileset, IsAQuadtreeOfAllTilesWithGrowingBoxesAndErrors) {
     if (tile.contains("content")) {
       const std::string uri = tile["content"]["uri"];
       EXPECT_TRUE(contents.insert(uri).second) << uri;
-      for (const Eigen::Vector3d& position : ContentPositions(Glb(folder.path() / "tiles" / uri))) EXPECT_TRUE(box.Contains(position)) << uri;
+      for (const Eigen::Vector3d& position : ContentPositions(Glb(folder_.path() / "tiles" / uri))) EXPECT_TRUE(box.Contains(position)) << uri;
     }
     if (!tile.contains("children")) {
       EXPECT_EQ(tile["geometricError"], 0.0);
@@ -177,11 +177,10 @@ TEST(Tileset, IsAQuadtreeOfAllTilesWithGrowingBoxesAndErrors) {
   EXPECT_EQ(contents.size(), tiles.size());
 }
 
-TEST(Tileset, BoxesAreTight) {
-  const TemporaryFolder folder;
+TEST_F(Tileset, BoxesAreTight) {
   const TexturedTile tile = SampleTile({0, -3, 2});
-  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), {tile}, folder.path());
-  const Box box(ReadTileset(folder.path())["root"]);
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), {tile}, folder_.path());
+  const Box box(ReadTileset(folder_.path())["root"]);
   Eigen::Vector3d min = tile.position[0], max = tile.position[0];
   for (const Eigen::Vector3d& position : tile.position) {
     min = min.cwiseMin(position);
@@ -191,26 +190,24 @@ TEST(Tileset, BoxesAreTight) {
   EXPECT_LT((box.max - max).norm(), 1e-4);
 }
 
-TEST(Tileset, ErrorsFollowTheTextureWhereTheGroundIsFlat) {
-  const TemporaryFolder folder;
+TEST_F(Tileset, ErrorsFollowTheTextureWhereTheGroundIsFlat) {
   TexturedTile coarse = SampleTile({1, 0, 0});
   coarse.error_m = 0.0;
   for (Eigen::Vector3d& position : coarse.position) position.z() = 0.0;
-  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), {SampleTile({0, 0, 0}), coarse}, folder.path());
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), {SampleTile({0, 0, 0}), coarse}, folder_.path());
   // 128 m in 64 x 48 texels: their middle side is 2.3 m.
-  EXPECT_NEAR(ReadTileset(folder.path())["root"]["geometricError"].get<double>(), 8.0 * 128.0 / std::sqrt(64.0 * 48.0), 0.01);
+  EXPECT_NEAR(ReadTileset(folder_.path())["root"]["geometricError"].get<double>(), 8.0 * 128.0 / std::sqrt(64.0 * 48.0), 0.01);
 }
 
-TEST(Tileset, TilesBelowAMissingOneHangOnWhatIsAbove) {
-  const TemporaryFolder folder;
-  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), {SampleTile({2, 0, 0}), SampleTile({0, 1, 1}), SampleTile({1, 1, 1})}, folder.path());
-  const json root = ReadTileset(folder.path())["root"];
+TEST_F(Tileset, TilesBelowAMissingOneHangOnWhatIsAbove) {
+  WriteTiles(MapFrame(SampleInfo({60.0, 24.9, 30.0})), {SampleTile({2, 0, 0}), SampleTile({0, 1, 1}), SampleTile({1, 1, 1})}, folder_.path());
+  const json root = ReadTileset(folder_.path())["root"];
   EXPECT_EQ(root["content"]["uri"], "2_0_0.glb");
   ASSERT_EQ(root["children"].size(), 2U);
   EXPECT_EQ(root["children"][0]["content"]["uri"], "0_1_1.glb");
 }
 
-TEST(Tileset, DoesNotDependOnTheOrderOfTiles) {
+TEST_F(Tileset, DoesNotDependOnTheOrderOfTiles) {
   const TemporaryFolder one, other;
   std::vector<TexturedTile> tiles = SamplePyramid();
   const MapFrame frame(SampleInfo({60.0, 24.9, 30.0}));
@@ -223,10 +220,9 @@ TEST(Tileset, DoesNotDependOnTheOrderOfTiles) {
   }
 }
 
-TEST(Tileset, WithoutGeoReferenceThereIsNoTransform) {
-  const TemporaryFolder folder;
-  WriteTiles(MapFrame(SampleInfo({0.0, 0.0, 0.0}, false)), {SampleTile({0, 0, 0})}, folder.path());
-  const json tileset = ReadTileset(folder.path());
+TEST_F(Tileset, WithoutGeoReferenceThereIsNoTransform) {
+  WriteTiles(MapFrame(SampleInfo({0.0, 0.0, 0.0}, false)), {SampleTile({0, 0, 0})}, folder_.path());
+  const json tileset = ReadTileset(folder_.path());
   EXPECT_FALSE(tileset["root"].contains("transform"));
   EXPECT_NE(tileset["asset"]["extras"]["crs"].get<std::string>().find("local frame"), std::string::npos);
 }

@@ -8,6 +8,7 @@
 #include "core/base/errors.h"
 #include "core/base/random.h"
 #include "surface/fusion/fuse.h"
+#include "tests/support/error_of.h"
 #include "tests/surface/fusion/analytic_views.h"
 
 namespace skyquilt::surface {
@@ -133,14 +134,10 @@ TEST(PlanPieces, SaysHowMuchMemoryIsMissing) {
   const LatticeBox whole{{-100, -100, -10}, {100, 100, 40}};
   const double least = LargestTileBytes(pictures.views, whole, PieceOptions(), threads);
   EXPECT_NO_THROW(PlanPieces(pictures.views, whole, PieceOptions(), least, threads));
-  try {
-    PlanPieces(pictures.views, whole, PieceOptions(), 0.99 * least, threads);
-    FAIL() << "no error";
-  } catch (const base::UsageError& error) {
-    const std::string needed = std::to_string(static_cast<int>(std::ceil(least / 1e6))) + " MB";
-    EXPECT_NE(std::string(error.what()).find("--memory"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find(needed), std::string::npos) << error.what();
-  }
+  const std::string error = UsageErrorOf([&] { PlanPieces(pictures.views, whole, PieceOptions(), 0.99 * least, threads); });
+  const std::string needed = std::to_string(static_cast<int>(std::ceil(least / 1e6))) + " MB";
+  EXPECT_NE(error.find("--memory"), std::string::npos) << error;
+  EXPECT_NE(error.find(needed), std::string::npos) << error;
   EXPECT_THROW(PlanPieces(pictures.views, whole, PieceOptions(), std::numeric_limits<double>::quiet_NaN(), threads), base::UsageError);
   // More voxels than keys.
   EXPECT_THROW(PlanPieces(pictures.views, {{-(1 << 19), 0, 0}, {9, 9, 9}}, PieceOptions(), 1e12, threads), base::UsageError);

@@ -6,20 +6,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <memory>
 #include <string>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/gis/read_maps.h"
 #include "tests/support/error_of.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 
 namespace skyquilt::surface {
 namespace {
+
+using SurfaceMapsTest = InTemporaryFolder;
 
 scene::SceneInfo Info(bool georeferenced) {
   scene::SceneInfo info;
@@ -84,11 +83,10 @@ class OpenedFile {
   GDALDataset* dataset_ = nullptr;
 };
 
-TEST(SurfaceMaps, ShowGroundAndWhatStandsOnIt) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceMapsTest, ShowGroundAndWhatStandsOnIt) {
   base::ThreadPool threads(2);
-  const SurfaceMaps maps = MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, {}, folder / "maps", threads);
-  const OpenedFile dtm(folder / "maps/dtm.tif"), above(folder / "maps/height_above_ground.tif"), shade(folder / "maps/hillshade.tif");
+  const SurfaceMaps maps = MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, {}, folder_ / "maps", threads);
+  const OpenedFile dtm(folder_ / "maps/dtm.tif"), above(folder_ / "maps/height_above_ground.tif"), shade(folder_ / "maps/hillshade.tif");
   for (const OpenedFile* map : {&dtm, &above, &shade}) {
     EXPECT_EQ(map->Item("LAYOUT", "IMAGE_STRUCTURE"), "COG");
     EXPECT_STREQ((*map)->GetSpatialRef()->GetAuthorityCode(nullptr), "32631");
@@ -112,7 +110,7 @@ TEST(SurfaceMaps, ShowGroundAndWhatStandsOnIt) {
     EXPECT_NEAR(ground[cell], Ground(at.x(), at.y()), 0.1);
     EXPECT_NEAR(height[cell], House(at.x(), at.y()) ? 9.0 : 0.0, 0.1);
   }
-  const OpenedFile contours(folder / "maps/contours.gpkg");
+  const OpenedFile contours(folder_ / "maps/contours.gpkg");
   OGRLayer* layer = contours->GetLayerByName("contours");
   ASSERT_NE(layer, nullptr);
   EXPECT_STREQ(layer->GetSpatialRef()->GetAuthorityCode(nullptr), "32631");
@@ -128,7 +126,7 @@ TEST(SurfaceMaps, ShowGroundAndWhatStandsOnIt) {
 
   ASSERT_EQ(maps.files.size(), 4U);
   for (const WrittenFile& file : maps.files) {
-    EXPECT_EQ(file.bytes, static_cast<int64_t>(std::filesystem::file_size(folder / "maps" / file.file)));
+    EXPECT_EQ(file.bytes, static_cast<int64_t>(std::filesystem::file_size(folder_ / "maps" / file.file)));
     EXPECT_EQ(file.crs, "EPSG:32631");
   }
   EXPECT_EQ(maps.files[0].file, "dtm.tif");
@@ -137,34 +135,32 @@ TEST(SurfaceMaps, ShowGroundAndWhatStandsOnIt) {
   EXPECT_NE(maps.files[3].detail.find("lines every 0.2 m"), std::string::npos);
 }
 
-TEST(SurfaceMaps, NameTheGeoidWhereHeightsAreAboveIt) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceMapsTest, NameTheGeoidWhereHeightsAreAboveIt) {
   base::ThreadPool threads(2);
-  MakeSurfaceMaps(Surface(true), MapFrame(Info(true), geo::Vertical::kEgm96), std::nullopt, {}, folder.path(), threads);
-  const OpenedFile dtm(folder / "dtm.tif"), above(folder / "height_above_ground.tif");
+  MakeSurfaceMaps(Surface(true), MapFrame(Info(true), geo::Vertical::kEgm96), std::nullopt, {}, folder_.path(), threads);
+  const OpenedFile dtm(folder_ / "dtm.tif"), above(folder_ / "height_above_ground.tif");
   EXPECT_STREQ(dtm->GetSpatialRef()->GetAuthorityCode("VERT_CS"), "5773");
   EXPECT_EQ(dtm.Item("VERTICAL_REFERENCE"), "EGM96 geoid (EPSG:5773)");
   EXPECT_STREQ(above->GetSpatialRef()->GetAuthorityCode(nullptr), "32631") << "no height above the geoid";
-  EXPECT_EQ(gis::ReadUndulations(folder / "dtm.tif"), -1);
-  EXPECT_EQ(gis::ReadUndulations(folder / "height_above_ground.tif"), 0);
-  EXPECT_EQ(gis::ReadContours(folder / "contours.gpkg", 100000).undulations, -1);
+  EXPECT_EQ(gis::ReadUndulations(folder_ / "dtm.tif"), -1);
+  EXPECT_EQ(gis::ReadUndulations(folder_ / "height_above_ground.tif"), 0);
+  EXPECT_EQ(gis::ReadContours(folder_ / "contours.gpkg", 100000).undulations, -1);
 }
 
-TEST(SurfaceMaps, TheBoundaryCutsAllOfThem) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceMapsTest, TheBoundaryCutsAllOfThem) {
   base::ThreadPool threads(1);
   const gis::Boundary boundary({{{kLeft + 10, kTop - 50}, {kLeft + 50, kTop - 50}, {kLeft + 30, kTop - 5}}});
   SurfaceOptions options;
   options.contour_interval_m = 0.25;
-  MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), boundary, options, folder.path(), threads);
+  MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), boundary, options, folder_.path(), threads);
   const std::vector<uint8_t> mask = boundary.Mask(Surface(true).grid);
   for (const char* name : {"dtm.tif", "height_above_ground.tif", "hillshade.tif"}) {
-    const OpenedFile map(folder / name);
+    const OpenedFile map(folder_ / name);
     const auto no_data = static_cast<float>(map->GetRasterBand(1)->GetNoDataValue());
     const std::vector<float> values = map.Values();
     for (size_t cell = 0; cell < mask.size(); ++cell) EXPECT_EQ(values[cell] != no_data, mask[cell] != 0) << name;
   }
-  const OpenedFile contours(folder / "contours.gpkg");
+  const OpenedFile contours(folder_ / "contours.gpkg");
   OGREnvelope extent;
   ASSERT_EQ(contours->GetLayerByName("contours")->GetExtent(&extent), OGRERR_NONE);
   EXPECT_GT(extent.MinX, kLeft + 9.0);
@@ -172,67 +168,60 @@ TEST(SurfaceMaps, TheBoundaryCutsAllOfThem) {
   EXPECT_LT(extent.MaxY, kTop - 4.0);
 }
 
-TEST(SurfaceMaps, WithoutGeoReferenceTheyHaveNoCrs) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceMapsTest, WithoutGeoReferenceTheyHaveNoCrs) {
   base::ThreadPool threads(1);
-  const SurfaceMaps maps = MakeSurfaceMaps(Surface(false), MapFrame(Info(false)), std::nullopt, {}, folder.path(), threads);
-  const OpenedFile dtm(folder / "dtm.tif");
+  const SurfaceMaps maps = MakeSurfaceMaps(Surface(false), MapFrame(Info(false)), std::nullopt, {}, folder_.path(), threads);
+  const OpenedFile dtm(folder_ / "dtm.tif");
   EXPECT_TRUE(dtm->GetSpatialRef() == nullptr || dtm->GetSpatialRef()->IsEmpty());
   EXPECT_EQ(dtm.Item("VERTICAL_REFERENCE"), "local frame");
   EXPECT_EQ(maps.files[0].crs, "local frame, metres");
 }
 
-TEST(SurfaceMaps, TheSameForAnyNumberOfThreads) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceMapsTest, TheSameForAnyNumberOfThreads) {
   for (const int n : {1, 3}) {
     base::ThreadPool threads(n);
-    MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, {}, folder / std::to_string(n), threads);
+    MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, {}, folder_ / std::to_string(n), threads);
   }
   for (const char* name : {"dtm.tif", "height_above_ground.tif", "hillshade.tif", "contours.gpkg"}) {
-    EXPECT_TRUE(base::ReadFile(folder / "1" / name) == base::ReadFile(folder / "3" / name)) << name;
+    EXPECT_TRUE(base::ReadFile(folder_ / "1" / name) == base::ReadFile(folder_ / "3" / name)) << name;
   }
 }
 
-TEST(SurfaceMaps, EmptyFlatAndOneCell) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceMapsTest, EmptyFlatAndOneCell) {
   base::ThreadPool threads(1);
   const MapFrame frame(Info(true));
-  EXPECT_TRUE(MakeSurfaceMaps({}, frame, std::nullopt, {}, folder.path(), threads).files.empty());
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_TRUE(MakeSurfaceMaps({}, frame, std::nullopt, {}, folder_.path(), threads).files.empty());
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
   HeightRaster nothing = Surface(true);
   std::fill(nothing.height_m.begin(), nothing.height_m.end(), std::numeric_limits<float>::quiet_NaN());
-  EXPECT_EQ(MakeSurfaceMaps(nothing, frame, std::nullopt, {}, folder / "nothing", threads).files.size(), 4U);
+  EXPECT_EQ(MakeSurfaceMaps(nothing, frame, std::nullopt, {}, folder_ / "nothing", threads).files.size(), 4U);
   HeightRaster flat = Surface(true);
   std::fill(flat.height_m.begin(), flat.height_m.end(), 12.34F);
-  EXPECT_EQ(MakeSurfaceMaps(flat, frame, std::nullopt, {}, folder / "flat", threads).files[3].detail, "0 lines every 0.1 m");
+  EXPECT_EQ(MakeSurfaceMaps(flat, frame, std::nullopt, {}, folder_ / "flat", threads).files[3].detail, "0 lines every 0.1 m");
   HeightRaster one = Surface(true);
   one.grid.width = one.grid.height = 1;
   one.height_m = {3.0F};
-  EXPECT_EQ(MakeSurfaceMaps(one, frame, std::nullopt, {}, folder / "one", threads).files.size(), 4U);
+  EXPECT_EQ(MakeSurfaceMaps(one, frame, std::nullopt, {}, folder_ / "one", threads).files.size(), 4U);
 }
 
-TEST(SurfaceMaps, WithoutMapsOnlyTheTerrainIsFound) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceMapsTest, WithoutMapsOnlyTheTerrainIsFound) {
   base::ThreadPool threads(1);
   SurfaceOptions options;
   options.maps = false;
-  const SurfaceMaps maps = MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, options, folder / "maps", threads);
+  const SurfaceMaps maps = MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, options, folder_ / "maps", threads);
   EXPECT_TRUE(maps.files.empty());
-  EXPECT_FALSE(std::filesystem::exists(folder / "maps"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "maps"));
   EXPECT_FALSE(std::isnan(maps.terrain.height_m[static_cast<size_t>(kWidth) * 120 + 160]));
 }
 
-TEST(SurfaceMaps, FailuresLeaveNoPartialFile) {
-  const TemporaryFolder folder;
+TEST_F(SurfaceMapsTest, FailuresLeaveNoPartialFile) {
   base::ThreadPool threads(1);
-  base::WriteFileAtomically(folder / "file", "not a folder");
+  base::WriteFileAtomically(folder_ / "file", "not a folder");
   const std::string error =
-      InputErrorOf([&] { MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, {}, folder / "file/maps", threads); });
+      InputErrorOf([&] { MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, {}, folder_ / "file/maps", threads); });
   EXPECT_NE(error, "");
-  base::RequestCancel();
-  EXPECT_THROW(MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, {}, folder / "maps", threads), base::Interrupted);
-  base::ClearCancel();
-  EXPECT_TRUE(std::filesystem::is_empty(folder / "maps"));
+  ExpectStopsWhenAsked([&] { MakeSurfaceMaps(Surface(true), MapFrame(Info(true)), std::nullopt, {}, folder_ / "maps", threads); });
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "maps"));
 }
 
 }  // namespace

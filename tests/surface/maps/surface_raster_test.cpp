@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/errors.h"
 #include "core/base/progress.h"
 #include "core/geo/enu_frame.h"
 #include "surface/maps/surface_maps.h"

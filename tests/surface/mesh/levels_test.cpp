@@ -4,12 +4,11 @@
 #include <map>
 #include <set>
 
-#include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "core/base/progress.h"
 #include "made_meshes.h"
 #include "surface/mesh/mesh_tools.h"
 #include "surface/mesh/simplify.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -144,9 +143,7 @@ TEST(BuildLevels, CanBeInterrupted) {
   base::Progress::SetQuiet(true);
   base::ThreadPool threads(2);
   const std::vector<MeshTile> finest = SplitIntoTiles(GridMesh(0, 0, 40, 40, Flat), 10.0);
-  base::RequestCancel();
-  EXPECT_THROW(BuildLevels(finest, 0.1, threads), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { BuildLevels(finest, 0.1, threads); });
 }
 
 }  // namespace

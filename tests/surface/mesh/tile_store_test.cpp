@@ -11,6 +11,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "made_meshes.h"
+#include "tests/support/error_of.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -32,13 +33,10 @@ class TileStore : public testing::Test {
       ASSERT_NE(out, nullptr);
       ASSERT_EQ(std::fwrite(content.data(), 1, content.size(), out), content.size());
       std::fclose(out);
-      try {
-        load();
-        FAIL() << what << " is not noticed";
-      } catch (const base::InputError& error) {
-        EXPECT_EQ(error.file(), file);
-        EXPECT_NE(error.finding().find("Delete it; the same command makes it again"), std::string::npos) << error.finding();
-      }
+      const auto error = Caught<base::InputError>([&] { load(); });
+      ASSERT_TRUE(error) << what << " is not noticed";
+      EXPECT_EQ(error->file(), file);
+      EXPECT_NE(error->finding().find("Delete it; the same command makes it again"), std::string::npos) << error->finding();
     };
     for (size_t n = 0; n < whole.size(); ++n) expect_error(whole.substr(0, n), "a cut after " + std::to_string(n) + " bytes");
     expect_error(whole + "x", "a byte too many");

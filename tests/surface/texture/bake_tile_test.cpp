@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/image/image.h"
 #include "surface/texture/paint_atlas.h"
 #include "surface/texture/raster.h"
+#include "tests/support/error_of.h"
 #include "texture_meshes.h"
 
 namespace skyquilt::surface {
@@ -279,9 +278,7 @@ TEST(BakeTile, OneTriangleSmallerThanATexelHasATexture) {
 }
 
 TEST(BakeTile, StopsWhenCancelled) {
-  base::RequestCancel();
-  EXPECT_THROW(Bake(TileOf(Plane()), {}, FieldOf(PlaneAtZero, Waves), {}), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { Bake(TileOf(Plane()), {}, FieldOf(PlaneAtZero, Waves), {}); });
 }
 
 }  // namespace

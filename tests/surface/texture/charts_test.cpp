@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "texture_meshes.h"
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "core/base/errors.h"
 #include "surface/views/view_rendering.h"
 #include "tests/surface/views/analytic_survey.h"
 

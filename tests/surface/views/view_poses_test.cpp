@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "core/base/errors.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/surface/views/analytic_survey.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/errors.h"
-#include "tests/core/gis/limited_file_size.h"
+#include "tests/support/limited_file_size.h"
 #include "tests/tour/export/sample_tour_project.h"
 
 namespace skyquilt::tour {

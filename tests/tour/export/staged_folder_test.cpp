@@ -4,6 +4,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 #include "tour/export/disk_space.h"
 #include "tour/export/embed_page.h"
@@ -91,12 +92,8 @@ TEST_F(Staged, AnInterruptedMoveIsTakenUpAgain) {
 TEST(FreeSpace, TooLittleIsSaidBeforeWorkBegins) {
   const TemporaryFolder folder;
   EXPECT_NO_THROW(RequireFreeSpace(folder / "not" / "yet", 1000, "the tour"));
-  try {
-    RequireFreeSpace(folder / "not" / "yet", int64_t{1} << 60, "the tour");
-    FAIL() << "nothing thrown";
-  } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("the tour needs 1152921504606.8 MB"), std::string::npos) << error.what();
-  }
+  const std::string error = InputErrorOf([&] { RequireFreeSpace(folder / "not" / "yet", int64_t{1} << 60, "the tour"); });
+  EXPECT_NE(error.find("the tour needs 1152921504606.8 MB"), std::string::npos) << error;
 }
 
 TEST(EmbedPage, TitlesStayText) {

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-
+#include "tests/support/error_of.h"
 #include "tests/tour/format/sample_assets.h"
 
 namespace skyquilt::tour {
@@ -12,12 +11,7 @@ namespace {
 
 // Why these bytes are not of this type; empty when they are.
 std::string WhyNot(AssetType type, const std::string& bytes) {
-  try {
-    CheckAsset(type, BytesOf(bytes));
-  } catch (const base::Refused& refused) {
-    return refused.what();
-  }
-  return "";
+  return ErrorOf<base::Refused>([&] { CheckAsset(type, BytesOf(bytes)); });
 }
 
 TEST(AssetName, IsADigestAndAType) {

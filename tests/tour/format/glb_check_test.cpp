@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/json_text.h"
+#include "tests/support/error_of.h"
 #include "tests/tour/format/sample_assets.h"
 
 namespace skyquilt::tour {
@@ -12,12 +13,7 @@ namespace {
 using Json = nlohmann::json;
 
 std::string WhyNotGlb(const std::string& bytes) {
-  try {
-    CheckGlb(BytesOf(bytes));
-  } catch (const base::Refused& refused) {
-    return refused.what();
-  }
-  return "";
+  return ErrorOf<base::Refused>([&] { CheckGlb(BytesOf(bytes)); });
 }
 
 std::string WhyNotGlb(const std::function<void(Json&)>& change) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tests/support/error_of.h"
 #include "tests/tour/format/sample_tour.h"
 #include "tour/format/read_tour.h"
 
@@ -107,14 +108,7 @@ TEST(PlayableTour, OfAnotherVersionWhatIsUnderstoodIsPlayed) {
 }
 
 TEST(PlayableTour, ADamagedOneIsAnErrorWithItsPath) {
-  const auto reason = [](const std::function<void(Json&)>& change) -> std::string {
-    try {
-      Play(change);
-    } catch (const base::Refused& refused) {
-      return refused.what();
-    }
-    return "";
-  };
+  const auto reason = [](const std::function<void(Json&)>& change) -> std::string { return ErrorOf<base::Refused>([&] { Play(change); }); };
   EXPECT_TRUE(reason([](Json& json) { json["stops"][1].erase("pose"); }).starts_with("stops[1].pose "));
   EXPECT_TRUE(reason([](Json& json) { json["stops"][0]["link"]["url"] = "javascript:x"; }).starts_with("stops[0].link.url "));
   EXPECT_TRUE(reason([](Json& json) { json["version"] = "new"; }).starts_with("version "));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/json_text.h"
+#include "tests/support/error_of.h"
 #include "tests/tour/format/sample_tour.h"
 #include "tour/format/write_tour.h"
 
@@ -14,12 +15,7 @@ using Json = nlohmann::json;
 
 // Why a changed tour is refused; empty when it is not.
 std::string Refusal(const std::function<void(Json&)>& change) {
-  try {
-    ParseTour(SampleTourWith(change));
-  } catch (const base::Refused& refused) {
-    return refused.what();
-  }
-  return "";
+  return ErrorOf<base::Refused>([&] { ParseTour(SampleTourWith(change)); });
 }
 
 TEST(ParseTour, ReadsEveryMember) {

@@ -26,37 +26,38 @@ std::set<std::string> FilesIn(const std::filesystem::path& folder) {
   return names;
 }
 
-TEST(MakePictures, ASecondRunRendersNothing) {
-  CountedField counted;
-  const TemporaryFolder work;
-  const std::vector<PictureRequest> requests = ThreeRequests();
-  const MadePictures first = MakePictures(requests, counted.field, work.path());
+class MakePicturesTest : public ::testing::Test {
+ protected:
+  CountedField counted_;
+  const TemporaryFolder work_;
+  std::vector<PictureRequest> requests_ = ThreeRequests();
+};
+
+TEST_F(MakePicturesTest, ASecondRunRendersNothing) {
+  const MadePictures first = MakePictures(requests_, counted_.field, work_.path());
   EXPECT_EQ(first.rendered, 3);
-  EXPECT_EQ(counted.n_rays, 2 * 64 * 32 + 40 * 30);
-  EXPECT_EQ(first.rays, counted.n_rays);
+  EXPECT_EQ(counted_.n_rays, 2 * 64 * 32 + 40 * 30);
+  EXPECT_EQ(first.rays, counted_.n_rays);
   ASSERT_EQ(first.files.size(), 3U);
   const std::string bytes = base::ReadFile(first.files[1]);
-  const MadePictures second = MakePictures(requests, counted.field, work.path());
+  const MadePictures second = MakePictures(requests_, counted_.field, work_.path());
   EXPECT_EQ(second.rendered, 0);
-  EXPECT_EQ(counted.n_rays, first.rays);
+  EXPECT_EQ(counted_.n_rays, first.rays);
   EXPECT_EQ(second.files, first.files);
   EXPECT_EQ(base::ReadFile(first.files[1]), bytes);
 }
 
 // Any byte: those of the header, of the colours, of the depths, of the checksum; and a file that is cut off.
-TEST(MakePictures, ADamagedPictureIsRenderedAnew) {
-  CountedField counted;
-  const TemporaryFolder work;
-  const std::vector<PictureRequest> requests = ThreeRequests();
-  const std::filesystem::path file = MakePictures(requests, counted.field, work.path()).files[0];
+TEST_F(MakePicturesTest, ADamagedPictureIsRenderedAnew) {
+  const std::filesystem::path file = MakePictures(requests_, counted_.field, work_.path()).files[0];
   const std::string good = base::ReadFile(file);
   const auto expect_repaired = [&](const std::string& bad) {
     base::WriteFileAtomically(file, bad);
     EXPECT_THROW(OpenPicture(file), base::InputError);
-    EXPECT_EQ(MissingPictures(requests, counted.field, work.path()).size(), 1U);
-    counted.n_rays = 0;
-    EXPECT_EQ(MakePictures(requests, counted.field, work.path()).rendered, 1);
-    EXPECT_EQ(counted.n_rays, 64 * 32);
+    EXPECT_EQ(MissingPictures(requests_, counted_.field, work_.path()).size(), 1U);
+    counted_.n_rays = 0;
+    EXPECT_EQ(MakePictures(requests_, counted_.field, work_.path()).rendered, 1);
+    EXPECT_EQ(counted_.n_rays, 64 * 32);
     EXPECT_EQ(base::ReadFile(file), good);
   };
   for (const size_t at : {size_t{0}, size_t{9}, size_t{30}, size_t{50}, good.size() / 2, good.size() - 20, good.size() - 1}) {
@@ -69,60 +70,52 @@ TEST(MakePictures, ADamagedPictureIsRenderedAnew) {
   expect_repaired("");
 }
 
-TEST(MakePictures, ContinuesAfterAnInterruption) {
-  CountedField counted;
-  const TemporaryFolder work;
-  const std::vector<PictureRequest> requests = ThreeRequests();
+TEST_F(MakePicturesTest, ContinuesAfterAnInterruption) {
   // In the middle of the second picture, which has three batches as the first one.
   int batches = 0;
-  counted.after_batch = [&batches] {
+  counted_.after_batch = [&batches] {
     if (++batches == 4) base::RequestCancel();
   };
-  EXPECT_THROW(MakePictures(requests, counted.field, work.path()), base::Interrupted);
+  EXPECT_THROW(MakePictures(requests_, counted_.field, work_.path()), base::Interrupted);
   base::ClearCancel();
-  EXPECT_EQ(FilesIn(work.path()).size(), 1U) << "whole or absent";
-  EXPECT_EQ(MissingPictures(requests, counted.field, work.path()).size(), 2U);
-  counted.n_rays = 0;
-  EXPECT_EQ(MakePictures(requests, counted.field, work.path()).rendered, 2);
-  EXPECT_EQ(counted.n_rays, 64 * 32 + 40 * 30);
+  EXPECT_EQ(FilesIn(work_.path()).size(), 1U) << "whole or absent";
+  EXPECT_EQ(MissingPictures(requests_, counted_.field, work_.path()).size(), 2U);
+  counted_.n_rays = 0;
+  EXPECT_EQ(MakePictures(requests_, counted_.field, work_.path()).rendered, 2);
+  EXPECT_EQ(counted_.n_rays, 64 * 32 + 40 * 30);
 }
 
-TEST(MakePictures, RendersWhatHasChangedAndRemovesTheRest) {
-  CountedField counted;
-  const TemporaryFolder work;
-  std::vector<PictureRequest> requests = ThreeRequests();
-  const MadePictures before = MakePictures(requests, counted.field, work.path());
-  base::WriteFileAtomically(work / "notes.txt", "not ours");
+TEST_F(MakePicturesTest, RendersWhatHasChangedAndRemovesTheRest) {
+  const MadePictures before = MakePictures(requests_, counted_.field, work_.path());
+  base::WriteFileAtomically(work_ / "notes.txt", "not ours");
   // As a killed process leaves it.
-  base::WriteFileAtomically(work / ("." + before.files[0].filename().string() + ".tmp.123.0"), "half");
+  base::WriteFileAtomically(work_ / ("." + before.files[0].filename().string() + ".tmp.123.0"), "half");
   const auto expect_rendered = [&](int64_t rendered, const char* why) {
-    const MadePictures made = MakePictures(requests, counted.field, work.path());
+    const MadePictures made = MakePictures(requests_, counted_.field, work_.path());
     EXPECT_EQ(made.rendered, rendered) << why;
     std::set<std::string> expected = {"notes.txt"};
     for (const auto& file : made.files) expected.insert(file.filename().string());
-    EXPECT_EQ(FilesIn(work.path()), expected) << why;
+    EXPECT_EQ(FilesIn(work_.path()), expected) << why;
   };
-  requests[0].cam_from_enu = Eigen::Quaterniond(0.6, 0.0, 0.8, 0.0);
+  requests_[0].cam_from_enu = Eigen::Quaterniond(0.6, 0.0, 0.8, 0.0);
   expect_rendered(0, "a panorama looks everywhere");
-  requests[2].cam_from_enu = Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0);
+  requests_[2].cam_from_enu = Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0);
   expect_rendered(1, "a still does not");
-  requests[1].eye_enu.x() += 1e-6;
+  requests_[1].eye_enu.x() += 1e-6;
   expect_rendered(1, "another eye");
-  requests[1].exposure = "0.5";
+  requests_[1].exposure = "0.5";
   expect_rendered(1, "another exposure");
-  std::swap(requests[0], requests[2]);
+  std::swap(requests_[0], requests_[2]);
   expect_rendered(0, "another order");
-  requests.push_back(requests[0]);
+  requests_.push_back(requests_[0]);
   expect_rendered(0, "the same picture twice");
-  counted.field.identity = "another scene";
+  counted_.field.identity = "another scene";
   expect_rendered(3, "another scene");
 }
 
-TEST(MakePictures, ExposuresAreThoseOfTheRequests) {
-  CountedField counted;
-  const TemporaryFolder work;
+TEST_F(MakePicturesTest, ExposuresAreThoseOfTheRequests) {
   const std::vector<PictureRequest> requests = {PanoramaAt({0.0, 0.0, 30.0}, 32, "normal"), PanoramaAt({0.0, 0.0, 30.0}, 32, "-1")};
-  const MadePictures made = MakePictures(requests, counted.field, work.path());
+  const MadePictures made = MakePictures(requests, counted_.field, work_.path());
   const image::Image8 normal = ColorsOf(OpenPicture(made.files[0])), darker = ColorsOf(OpenPicture(made.files[1]));
   // Ground east of the eye is red.
   EXPECT_EQ(normal.At(24, 15)[0], 255);

@@ -11,6 +11,8 @@
 namespace skyquilt::viewer {
 namespace {
 
+using OpenedFilesTest = SampleProjectTest;
+
 using Color = std::array<uint8_t, 4>;
 
 template <typename T>
@@ -26,11 +28,10 @@ image::Image8 PictureOf(ProjectData& data) {
 }
 
 // The front end lays the picture's edges on the outermost points: what is in the orthophoto must stay at its place on the ground.
-TEST(OpenedFiles, TheOrthophotoLiesOnThePointsOfTheTerrain) {
-  SampleProject sample;
-  sample.AddMaps(1500, 700);
+TEST_F(OpenedFilesTest, TheOrthophotoLiesOnThePointsOfTheTerrain) {
+  sample_.AddMaps(1500, 700);
   // On another grid than the surface model's, as after `render` with another resolution: red west of a line, green east of it.
-  gis::MapGrid grid = gis::ReadMapGrid(sample.project.ProductsFolder() / "dsm.tif");
+  gis::MapGrid grid = gis::ReadMapGrid(sample_.project.ProductsFolder() / "dsm.tif");
   EXPECT_TRUE(grid.georeferenced);
   EXPECT_EQ(grid.zone.Epsg(), 32632);
   const double line_east_m = -300.0;
@@ -40,8 +41,8 @@ TEST(OpenedFiles, TheOrthophotoLiesOnThePointsOfTheTerrain) {
   grid.resolution_m = 1.0;
   grid.width = 830;
   grid.height = 400;
-  sample.WriteOrthophoto(grid, [&](double easting, double) { return easting < line ? Color{200, 0, 0, 255} : Color{0, 200, 0, 255}; });
-  ProjectData data(sample.project);
+  sample_.WriteOrthophoto(grid, [&](double easting, double) { return easting < line ? Color{200, 0, 0, 255} : Color{0, 200, 0, 255}; });
+  ProjectData data(sample_.project);
   const std::string terrain = data.Get("terrain.bin", "").Content();
   const auto columns = Value<uint32_t>(terrain, 8), rows = Value<uint32_t>(terrain, 12);
   const auto east_of = [&](uint32_t column) {
@@ -57,14 +58,13 @@ TEST(OpenedFiles, TheOrthophotoLiesOnThePointsOfTheTerrain) {
   EXPECT_NEAR((1.0 - share) * east_of(before) + share * east_of(before + 1), line_east_m, 0.6);
 }
 
-TEST(OpenedFiles, WhereTheOrthophotoHasNoDataItIsGrey) {
-  SampleProject sample;
-  sample.AddMaps(3000, 300);
-  gis::MapGrid grid = gis::ReadMapGrid(sample.project.ProductsFolder() / "dsm.tif");
+TEST_F(OpenedFilesTest, WhereTheOrthophotoHasNoDataItIsGrey) {
+  sample_.AddMaps(3000, 300);
+  gis::MapGrid grid = gis::ReadMapGrid(sample_.project.ProductsFolder() / "dsm.tif");
   const double line = grid.left + 0.5 * grid.width * grid.resolution_m - 0.3;
   grid.width = 2900;  // ends before the surface model
-  sample.WriteOrthophoto(grid, [&](double easting, double) { return easting < line ? Color{0, 0, 0, 0} : Color{240, 240, 240, 255}; });
-  ProjectData data(sample.project);
+  sample_.WriteOrthophoto(grid, [&](double easting, double) { return easting < line ? Color{0, 0, 0, 0} : Color{240, 240, 240, 255}; });
+  ProjectData data(sample_.project);
   const image::Image8 picture = PictureOf(data);
   const int middle = picture.height / 2;
   EXPECT_NEAR(*picture.At(10, middle), 128, 2);
@@ -73,24 +73,22 @@ TEST(OpenedFiles, WhereTheOrthophotoHasNoDataItIsGrey) {
   for (int x = 0; x < picture.width; ++x) EXPECT_GT(*picture.At(x, middle), 110) << "a dark seam at " << x;
 }
 
-TEST(OpenedFiles, MapsInOtherCoordinatesAreNotShown) {
-  SampleProject sample;
-  sample.AddMaps();
-  survey::Survey local = survey::LoadSurvey(sample.project.SurveyFolder());
+TEST_F(OpenedFilesTest, MapsInOtherCoordinatesAreNotShown) {
+  sample_.AddMaps();
+  survey::Survey local = survey::LoadSurvey(sample_.project.SurveyFolder());
   local.georeferenced = false;
-  survey::SaveSurvey(local, sample.project.SurveyFolder());
-  ProjectData data(sample.project);
+  survey::SaveSurvey(local, sample_.project.SurveyFolder());
+  ProjectData data(sample_.project);
   EXPECT_TRUE(DescriptionOf(data)["crs"].is_null());
   EXPECT_TRUE(DescriptionOf(data)["terrain"].is_null());
   EXPECT_TRUE(IsMissing(DescriptionOf(data), "surface model"));
   EXPECT_EQ(data.Get("terrain.bin", "").status, 404);
 }
 
-TEST(OpenedFiles, ASceneGivesPlaceAndBoxWithoutSurvey) {
-  SampleProject sample;
-  WriteWholeScene(sample.project.SceneFile());
-  std::filesystem::remove(sample.project.SurveyFolder() / "survey.json");
-  ProjectData data(sample.project);
+TEST_F(OpenedFilesTest, ASceneGivesPlaceAndBoxWithoutSurvey) {
+  WriteWholeScene(sample_.project.SceneFile());
+  std::filesystem::remove(sample_.project.SurveyFolder() / "survey.json");
+  ProjectData data(sample_.project);
   const nlohmann::json description = DescriptionOf(data);
   EXPECT_EQ(description["scene"]["blocks"], 1);
   EXPECT_GT(description["scene"]["parameters"].get<int64_t>(), 0) << "train.json is not needed";
@@ -101,34 +99,31 @@ TEST(OpenedFiles, ASceneGivesPlaceAndBoxWithoutSurvey) {
   EXPECT_TRUE(IsMissing(description, "photos and sparse points"));
 }
 
-TEST(OpenedFiles, PhotosOutsideTheirFolderAreNotSent) {
-  SampleProject sample;
-  image::SaveJpeg(image::Image8(640, 400, 3, 9), sample.folder / "private.jpg", 90);
-  survey::Survey survey = survey::LoadSurvey(sample.project.SurveyFolder());
+TEST_F(OpenedFilesTest, PhotosOutsideTheirFolderAreNotSent) {
+  image::SaveJpeg(image::Image8(640, 400, 3, 9), sample_.folder / "private.jpg", 90);
+  survey::Survey survey = survey::LoadSurvey(sample_.project.SurveyFolder());
   survey.photos[0].name = "../private.jpg";
-  survey.photos[1].name = (sample.folder / "private.jpg").string();
-  survey::SaveSurvey(survey, sample.project.SurveyFolder());
-  ProjectData data(sample.project);
+  survey.photos[1].name = (sample_.folder / "private.jpg").string();
+  survey::SaveSurvey(survey, sample_.project.SurveyFolder());
+  ProjectData data(sample_.project);
   for (const char* photo : {"photos/0/", "photos/1/"}) {
     for (const char* size : {"thumbnail.jpg", "photo.jpg", "full.jpg"}) EXPECT_EQ(data.Get(std::string(photo) + size, "").status, 404);
   }
   EXPECT_FALSE(DescriptionOf(data)["photos"][0]["available"].get<bool>());
 }
 
-TEST(OpenedFiles, LinksAmongTheTilesAreNotFollowed) {
-  SampleProject sample;
-  sample.AddSurface();
-  base::WriteFileAtomically(sample.folder / "private", "private");
-  std::filesystem::create_symlink(sample.folder / "private", sample.project.SurfaceFolder() / "tiles" / "7_0_0.glb");
-  ProjectData data(sample.project);
+TEST_F(OpenedFilesTest, LinksAmongTheTilesAreNotFollowed) {
+  sample_.AddSurface();
+  base::WriteFileAtomically(sample_.folder / "private", "private");
+  std::filesystem::create_symlink(sample_.folder / "private", sample_.project.SurfaceFolder() / "tiles" / "7_0_0.glb");
+  ProjectData data(sample_.project);
   EXPECT_EQ(data.Get("tiles/7_0_0.glb", "").status, 404);
   EXPECT_EQ(data.Get("tiles/0_-1_2.glb", "").status, 200);
 }
 
-TEST(OpenedFiles, ReloadWhileFilesAreAskedFor) {
-  SampleProject sample;
-  sample.AddMaps(300, 300);
-  ProjectData data(sample.project);
+TEST_F(OpenedFilesTest, ReloadWhileFilesAreAskedFor) {
+  sample_.AddMaps(300, 300);
+  ProjectData data(sample_.project);
   const auto survey = data.survey();
   std::thread engine([&] {
     for (int i = 0; i < 20; ++i) data.Reload();
@@ -142,12 +137,11 @@ TEST(OpenedFiles, ReloadWhileFilesAreAskedFor) {
   EXPECT_EQ(data.survey(), survey) << "a survey whose file is the same is not read again";
 }
 
-TEST(OpenedFiles, CommandsCanBePastedIntoAShell) {
-  SampleProject sample;
-  const coordinator::Project odd{sample.folder.path() / "it's here; rm x"};
-  std::filesystem::rename(sample.project.folder, odd.folder);
+TEST_F(OpenedFilesTest, CommandsCanBePastedIntoAShell) {
+  const coordinator::Project odd{sample_.folder.path() / "it's here; rm x"};
+  std::filesystem::rename(sample_.project.folder, odd.folder);
   ProjectData data(odd);
-  const std::string quoted = "'" + (sample.folder.path() / "it").string() + "'\\''s here; rm x'";
+  const std::string quoted = "'" + (sample_.folder.path() / "it").string() + "'\\''s here; rm x'";
   const nlohmann::json description = DescriptionOf(data);
   for (const nlohmann::json& one : description["missing"]) {
     EXPECT_NE(one["advice"].get<std::string>().find(quoted), std::string::npos) << one;

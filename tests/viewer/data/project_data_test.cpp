@@ -16,6 +16,8 @@
 namespace skyquilt::viewer {
 namespace {
 
+using ProjectDataTest = SampleProjectTest;
+
 template <typename T>
 T ValueAt(const std::string& bytes, size_t at) {
   T value;
@@ -23,10 +25,8 @@ T ValueAt(const std::string& bytes, size_t at) {
   return value;
 }
 
-TEST(ProjectData, SaysWhatIsMissingAndWhichCommandHelps) {
-  SampleProject sample;
-  ProjectData data(sample.project);
-  const nlohmann::json description = DescriptionOf(data);
+TEST_F(ProjectDataTest, SaysWhatIsMissingAndWhichCommandHelps) {
+  const nlohmann::json description = DescriptionOf(data_);
   EXPECT_EQ(description["name"], "project");
   EXPECT_TRUE(description["scene"].is_null());
   EXPECT_TRUE(description["tiles"].is_null());
@@ -45,28 +45,26 @@ TEST(ProjectData, SaysWhatIsMissingAndWhichCommandHelps) {
   EXPECT_NEAR(description["ground_m"].get<double>(), 1.0, 1e-9);
 }
 
-TEST(ProjectData, ShowsASurfaceOnlyWhenItIsFinished) {
-  SampleProject sample;
-  sample.AddSurface();
-  std::filesystem::remove(sample.project.SurfaceTable());
-  ProjectData data(sample.project);
+TEST_F(ProjectDataTest, ShowsASurfaceOnlyWhenItIsFinished) {
+  sample_.AddSurface();
+  std::filesystem::remove(sample_.project.SurfaceTable());
+  ProjectData data(sample_.project);
   EXPECT_TRUE(DescriptionOf(data)["tiles"].is_null());
   EXPECT_EQ(data.Get("tiles/0_-1_2.glb", "").status, 404);
-  sample.AddSurface();
+  sample_.AddSurface();
   data.Reload();
   const nlohmann::json description = DescriptionOf(data);
   EXPECT_EQ(description["tiles"], "tiles/tileset.json");
   EXPECT_EQ(description["surface"]["triangles"], 12);
   EXPECT_EQ(description["revision"], 1);
-  EXPECT_EQ(data.Get("tiles/0_-1_2.glb", "r=1").file, sample.project.SurfaceFolder() / "tiles" / "0_-1_2.glb");
+  EXPECT_EQ(data.Get("tiles/0_-1_2.glb", "r=1").file, sample_.project.SurfaceFolder() / "tiles" / "0_-1_2.glb");
   EXPECT_TRUE(data.Get("tiles/0_-1_2.glb", "r=1").cache);
   EXPECT_FALSE(data.Get("tiles/0_-1_2.glb", "").cache);
 }
 
-TEST(ProjectData, GivesNothingThatIsNotInItsTable) {
-  SampleProject sample;
-  sample.AddSurface();
-  ProjectData data(sample.project);
+TEST_F(ProjectDataTest, GivesNothingThatIsNotInItsTable) {
+  sample_.AddSurface();
+  ProjectData data(sample_.project);
   for (const char* path : {"tiles/notes.txt", "tiles/../surface.json", "../config.toml", "survey/survey.json", "surface.json",
                            "photos/0/../1/full.jpg", "photos/2/full.jpg", "photos/-1/full.jpg", "photos/0", "photos//full.jpg",
                            "photos/99999999999999999999/full.jpg", "before/project.json", "pictures/0.png", "", "/etc/passwd", "tiles/"}) {
@@ -76,10 +74,9 @@ TEST(ProjectData, GivesNothingThatIsNotInItsTable) {
   EXPECT_EQ(data.Put("../evil.json", "{}", "").status, 405);
 }
 
-TEST(ProjectData, TerrainLiesWhereTheMapSays) {
-  SampleProject sample;
-  sample.AddMaps();
-  ProjectData data(sample.project);
+TEST_F(ProjectDataTest, TerrainLiesWhereTheMapSays) {
+  sample_.AddMaps();
+  ProjectData data(sample_.project);
   ASSERT_EQ(DescriptionOf(data)["terrain"], "terrain.bin");
   const std::string terrain = data.Get("terrain.bin", "").Content();
   ASSERT_EQ(terrain.substr(0, 8), "SKYTERR1");
@@ -110,7 +107,7 @@ TEST(ProjectData, TerrainLiesWhereTheMapSays) {
 }
 
 // The map is in another system than the survey, whose frame everything is shown in.
-TEST(ProjectData, TerrainHasTheHeightsOfTheSurvey) {
+TEST_F(ProjectDataTest, TerrainHasTheHeightsOfTheSurvey) {
   SampleProject own, other;
   own.AddMaps();
   other.AddMaps(40, 30, 418.0 - geo::Egm96Undulation(47.3769, 8.5417), -1);
@@ -122,29 +119,25 @@ TEST(ProjectData, TerrainHasTheHeightsOfTheSurvey) {
   }
 }
 
-TEST(ProjectData, TilesStandAtTheHeightsOfTheSurvey) {
-  SampleProject sample;
-  sample.AddSurface();
-  const std::filesystem::path file = sample.project.SurfaceFolder() / "tiles" / "tileset.json";
+TEST_F(ProjectDataTest, TilesStandAtTheHeightsOfTheSurvey) {
+  sample_.AddSurface();
+  const std::filesystem::path file = sample_.project.SurfaceFolder() / "tiles" / "tileset.json";
   base::WriteFileAtomically(file, R"({"asset": {"extras": {"surveyTransform": [1, 2]}}, "root": {"transform": [3, 4]}})");
-  ProjectData data(sample.project);
+  ProjectData data(sample_.project);
   const auto tileset = base::ParseJson(data.Get("tiles/tileset.json", "").Content());
   EXPECT_EQ(tileset["root"]["transform"], nlohmann::json::array({1, 2}));
 }
 
-TEST(ProjectData, LargeMapsAreReduced) {
-  SampleProject sample;
-  sample.AddMaps(1500, 700);
-  ProjectData data(sample.project);
+TEST_F(ProjectDataTest, LargeMapsAreReduced) {
+  sample_.AddMaps(1500, 700);
+  ProjectData data(sample_.project);
   const std::string terrain = data.Get("terrain.bin", "").Content();
   EXPECT_EQ(ValueAt<uint32_t>(terrain, 8), 512U);
   EXPECT_NEAR(ValueAt<uint32_t>(terrain, 12), 239, 1);
 }
 
-TEST(ProjectData, SendsPointsAndPhotos) {
-  SampleProject sample;
-  ProjectData data(sample.project);
-  const std::string points = data.Get("points.bin", "").Content();
+TEST_F(ProjectDataTest, SendsPointsAndPhotos) {
+  const std::string points = data_.Get("points.bin", "").Content();
   ASSERT_EQ(points.substr(0, 8), "SKYPNTS1");
   EXPECT_EQ(ValueAt<uint32_t>(points, 8), 100U);
   ASSERT_EQ(points.size(), 40U + 1500U);
@@ -152,45 +145,44 @@ TEST(ProjectData, SendsPointsAndPhotos) {
   EXPECT_EQ(points[40 + 1200], 10);
 
   const auto width = [&](const std::string& path) {
-    const std::string body = data.Get(path, "").Content();
+    const std::string body = data_.Get(path, "").Content();
     return image::DecodeRgb8({reinterpret_cast<const uint8_t*>(body.data()), body.size()}).width;
   };
   EXPECT_EQ(width("photos/0/thumbnail.jpg"), 256);
   EXPECT_EQ(width("photos/1/photo.jpg"), 640) << "never enlarged";
-  EXPECT_EQ(data.Get("photos/1/full.jpg", "").file, sample.photos / "IMG_1.jpg");
-  std::filesystem::remove(sample.photos / "IMG_1.jpg");
-  EXPECT_EQ(data.Get("photos/1/full.jpg", "").status, 404);
-  std::ofstream(sample.photos / "IMG_1.jpg") << "not a photo";
-  data.Reload();  // forgets what it made
-  EXPECT_EQ(data.Get("photos/1/full.jpg", "").status, 404) << "not a JPEG";
-  EXPECT_EQ(data.Get("photos/1/photo.jpg", "").status, 404);
+  EXPECT_EQ(data_.Get("photos/1/full.jpg", "").file, sample_.photos / "IMG_1.jpg");
+  std::filesystem::remove(sample_.photos / "IMG_1.jpg");
+  EXPECT_EQ(data_.Get("photos/1/full.jpg", "").status, 404);
+  std::ofstream(sample_.photos / "IMG_1.jpg") << "not a photo";
+  data_.Reload();  // forgets what it made
+  EXPECT_EQ(data_.Get("photos/1/full.jpg", "").status, 404) << "not a JPEG";
+  EXPECT_EQ(data_.Get("photos/1/photo.jpg", "").status, 404);
 }
 
-TEST(ProjectData, DamagedFilesBecomeReasons) {
-  SampleProject sample;
-  sample.AddMaps();
-  base::WriteFileAtomically(sample.project.SceneFile(), "not a scene");
-  base::WriteFileAtomically(sample.project.BlocksFile(), "{");
-  std::filesystem::create_directories(sample.project.ReportFolder());
-  base::WriteFileAtomically(sample.project.MetricsFile(), "[1");
+TEST_F(ProjectDataTest, DamagedFilesBecomeReasons) {
+  sample_.AddMaps();
+  base::WriteFileAtomically(sample_.project.SceneFile(), "not a scene");
+  base::WriteFileAtomically(sample_.project.BlocksFile(), "{");
+  std::filesystem::create_directories(sample_.project.ReportFolder());
+  base::WriteFileAtomically(sample_.project.MetricsFile(), "[1");
   {
-    ProjectData data(sample.project);
+    ProjectData data(sample_.project);
     const nlohmann::json description = DescriptionOf(data);
     EXPECT_TRUE(IsMissing(description, "exact frames"));
     EXPECT_TRUE(IsMissing(description, "blocks"));
     EXPECT_TRUE(IsMissing(description, "scores"));
     EXPECT_EQ(description["photos"].size(), 2U);
   }
-  base::WriteFileAtomically(sample.project.SurveyFolder() / "survey.json", "{}");
-  base::WriteFileAtomically(sample.project.ProductsFolder() / "dsm.tif", "not a map");
-  ProjectData data(sample.project);
+  base::WriteFileAtomically(sample_.project.SurveyFolder() / "survey.json", "{}");
+  base::WriteFileAtomically(sample_.project.ProductsFolder() / "dsm.tif", "not a map");
+  ProjectData data(sample_.project);
   EXPECT_TRUE(IsMissing(DescriptionOf(data), "photos and sparse points"));
   EXPECT_EQ(data.survey(), nullptr);
   EXPECT_EQ(data.Get("points.bin", "").status, 404);
   EXPECT_EQ(data.Get("terrain.bin", "").status, 404);
 }
 
-TEST(ProjectData, DescribesTheEarlierProjectInItsOwnFrame) {
+TEST_F(ProjectDataTest, DescribesTheEarlierProjectInItsOwnFrame) {
   SampleProject sample, earlier;
   earlier.AddMaps();
   survey::Survey moved = survey::LoadSurvey(earlier.project.SurveyFolder());
@@ -212,19 +204,15 @@ TEST(ProjectData, DescribesTheEarlierProjectInItsOwnFrame) {
   EXPECT_NEAR(transform[0], 1.0, 1e-9);
 }
 
-TEST(ProjectData, KeepsTheNewestPictures) {
-  SampleProject sample;
-  ProjectData data(sample.project);
-  const std::string first = data.AddPicture("one");
-  EXPECT_EQ(data.Get(first, "").Content(), "one");
-  for (int i = 0; i < 8; ++i) data.AddPicture("more");
-  EXPECT_EQ(data.Get(first, "").status, 404);
+TEST_F(ProjectDataTest, KeepsTheNewestPictures) {
+  const std::string first = data_.AddPicture("one");
+  EXPECT_EQ(data_.Get(first, "").Content(), "one");
+  for (int i = 0; i < 8; ++i) data_.AddPicture("more");
+  EXPECT_EQ(data_.Get(first, "").status, 404);
 }
 
-TEST(ProjectData, FilesThatAreKeptAreNotCopied) {
-  SampleProject sample;
-  ProjectData data(sample.project);
-  const DataReply first = data.Get("photos/0/photo.jpg", ""), second = data.Get("photos/0/photo.jpg", "");
+TEST_F(ProjectDataTest, FilesThatAreKeptAreNotCopied) {
+  const DataReply first = data_.Get("photos/0/photo.jpg", ""), second = data_.Get("photos/0/photo.jpg", "");
   ASSERT_NE(first.kept, nullptr);
   EXPECT_EQ(first.kept, second.kept);
 }

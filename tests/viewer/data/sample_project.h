@@ -1,6 +1,8 @@
 // A small project in a temporary folder: a survey of two photos, a surface model with its orthophoto, and a surface with one tile.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -93,6 +95,13 @@ struct SampleProject {
     base::WriteFileAtomically(project.SurfaceFolder() / "tiles" / "0_-1_2.glb", "glTF");
     base::WriteFileAtomically(project.SurfaceFolder() / "tiles" / "notes.txt", "private");
   }
+};
+
+// Tests that add files to the project first open it themselves.
+class SampleProjectTest : public ::testing::Test {
+ protected:
+  SampleProject sample_;
+  ProjectData data_{sample_.project};
 };
 
 inline nlohmann::json DescriptionOf(ProjectData& data) {

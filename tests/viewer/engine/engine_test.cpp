@@ -13,15 +13,17 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "products/camera_path.h"
-#include "products/render_views.h"
 #include "tests/support/connect_alone.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/in_temporary_folder.h"
 #include "tests/viewer/engine/whole_scene.h"
 #include "viewer/engine/scene_holder.h"
 #include "viewer/protocol/frame.h"
 
 namespace skyquilt::viewer {
 namespace {
+
+using EngineTest = InTemporaryFolder;
+using SceneHolderTest = InTemporaryFolder;
 
 // A folder that counts as a project, without a survey.
 coordinator::Project EmptyProject(const std::filesystem::path& folder) {
@@ -111,9 +113,8 @@ ViewRequest FromAbove(uint32_t seq) {
   return view;
 }
 
-TEST(Engine, ServesFramesAndPicksAndNoticesANewScene) {
-  const TemporaryFolder folder;
-  const coordinator::Project project = EmptyProject(folder.path() / "town");
+TEST_F(EngineTest, ServesFramesAndPicksAndNoticesANewScene) {
+  const coordinator::Project project = EmptyProject(folder_.path() / "town");
   WriteWholeScene(project.SceneFile(), {.solid = true});
   const auto comm = comm::ConnectAlone();
   ProjectData data(project);
@@ -144,9 +145,8 @@ TEST(Engine, ServesFramesAndPicksAndNoticesANewScene) {
   running.engine.OnClose(3);
 }
 
-TEST(Engine, GoesOnWithoutASceneUntilThereIsOne) {
-  const TemporaryFolder folder;
-  const coordinator::Project project = EmptyProject(folder.path() / "town");
+TEST_F(EngineTest, GoesOnWithoutASceneUntilThereIsOne) {
+  const coordinator::Project project = EmptyProject(folder_.path() / "town");
   const auto comm = comm::ConnectAlone();
   ProjectData data(project);
   RunningEngine running(InputOf(*comm, project), data);
@@ -161,10 +161,9 @@ TEST(Engine, GoesOnWithoutASceneUntilThereIsOne) {
   EXPECT_EQ(running.LastPass(1).header.seq, 1U);
 }
 
-TEST(SceneHolder, TheEarlierSceneIsPlacedByItsOrigin) {
+TEST_F(SceneHolderTest, TheEarlierSceneIsPlacedByItsOrigin) {
   base::ClearCancel();
-  const TemporaryFolder folder;
-  const coordinator::Project project = EmptyProject(folder.path() / "now"), before = EmptyProject(folder.path() / "then");
+  const coordinator::Project project = EmptyProject(folder_.path() / "now"), before = EmptyProject(folder_.path() / "then");
   WriteWholeScene(project.SceneFile(), {.solid = true});
   // 20 m higher: what has z = 4 there has z = 24 here.
   WriteWholeScene(before.SceneFile(),
@@ -210,10 +209,9 @@ TEST(SceneHolder, TheEarlierSceneIsPlacedByItsOrigin) {
   EXPECT_FALSE(scenes.Access().before);
 }
 
-TEST(SceneHolder, AWrongExposureEndsTheCommand) {
+TEST_F(SceneHolderTest, AWrongExposureEndsTheCommand) {
   base::ClearCancel();
-  const TemporaryFolder folder;
-  const coordinator::Project project = EmptyProject(folder.path() / "town");
+  const coordinator::Project project = EmptyProject(folder_.path() / "town");
   WriteWholeScene(project.SceneFile());
   const auto comm = comm::ConnectAlone();
   ProjectData data(project);

@@ -1,7 +1,6 @@
 // Batch size, cache of frames, encoder, watched files and places of two surveys.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <condition_variable>
 #include <limits>
 #include <mutex>

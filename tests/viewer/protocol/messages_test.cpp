@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "tests/support/error_of.h"
 #include "tests/viewer/protocol/sample_messages.h"
 
 namespace skyquilt::viewer {
@@ -16,12 +17,7 @@ T Parsed(const std::string& text) {
 }
 
 std::string Refusal(const std::string& text) {
-  try {
-    ParseClientMessage(text);
-  } catch (const BadMessage& error) {
-    return error.what();
-  }
-  return "";
+  return ErrorOf<BadMessage>([&] { ParseClientMessage(text); });
 }
 
 TEST(ClientMessages, KeepWhatTheTextSays) {

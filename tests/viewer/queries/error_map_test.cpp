@@ -6,6 +6,7 @@
 #include "core/image/encode.h"
 #include "core/image/image.h"
 #include "products/camera_path.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/viewer/queries/analytic_field.h"
 #include "viewer/queries/mean_map.h"
@@ -132,13 +133,9 @@ TEST_F(ErrorMapTest, MissingPhotosAreLeftOutUnlessAllAre) {
   EXPECT_EQ(answer["photos"], 1);
   EXPECT_EQ(answer["of_photos"], 3);
   std::filesystem::remove(folder_ / "photo0.png");
-  try {
-    Ask();
-    FAIL();
-  } catch (const BadMessage& error) {
-    EXPECT_NE(std::string(error.what()).find("none of the 3 held-out photos can be read: photo0.png"), std::string::npos) << error.what();
-    EXPECT_EQ(std::string(error.what()).find(folder_.path().string()), std::string::npos) << "folders are nobody's business";
-  }
+  const std::string error = ErrorOf<BadMessage>([&] { Ask(); });
+  EXPECT_NE(error.find("none of the 3 held-out photos can be read: photo0.png"), std::string::npos) << error;
+  EXPECT_EQ(error.find(folder_.path().string()), std::string::npos) << "folders are nobody's business";
 }
 
 TEST_F(ErrorMapTest, NeedsHeldOutPhotosASurveyAndAField) {

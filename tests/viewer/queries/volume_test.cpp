@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tests/support/error_of.h"
 #include "tests/viewer/queries/analytic_field.h"
 #include "viewer/queries/polygon_cells.h"
 
@@ -158,12 +159,7 @@ TEST(Volume, NoisyCornersCountByTheirMedian) {
 
 TEST(Volume, SaysWhyThereIsNone) {
   const auto refusal = [](const VolumeRequest& request, const Surface& surface) -> std::string {
-    try {
-      AnswerOf(*MakeVolume(request), AccessTo(FieldOf(surface)));
-    } catch (const BadMessage& error) {
-      return error.what();
-    }
-    return "";
+    return ErrorOf<BadMessage>([&] { AnswerOf(*MakeVolume(request), AccessTo(FieldOf(surface))); });
   };
   const Surface nothing = Above([](double, double) -> std::optional<double> { return {}; });
   const Surface middle =

@@ -16,8 +16,6 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* kStopView = R"({"type":"stop","seq":7})";
 
 TEST_F(HostileTest, RequestsThatAreNotHttp) {
-  Start();
-  const std::string cookie = Login();
   const std::string host = "Host: " + host_ + "\r\n";
   const std::string attacks[] = {
       std::string("\r\n\r\n\r\n\r\n"),
@@ -30,23 +28,21 @@ TEST_F(HostileTest, RequestsThatAreNotHttp) {
       "GET / HTTP/1.1\r\nHost : x\r\n\r\n",
       "GET /\x01 HTTP/1.1\r\n" + host + "\r\n",
       std::string("GET / HTTP/1.1\r\nHost: a\0b\r\n\r\n", 28),
-      "PUT /data/x HTTP/1.1\r\n" + host + "Origin: " + origin_ + "\r\nCookie: " + cookie + "\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n"};
+      "PUT /data/x HTTP/1.1\r\n" + host + "Origin: " + origin_ + "\r\nCookie: " + cookie_ + "\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n"};
   for (const std::string& bytes : attacks) {
     EXPECT_EQ(Status(AskRaw(bytes)), 400) << bytes;
   }
   for (const std::string& bytes : {std::string(), std::string("GET / HT"), "PUT /data/x HTTP/1.1\r\n" + host + "Content-Length: 9\r\n\r\nabc"}) {
     RawClient(server_->port()).Send(bytes);
   }
-  EXPECT_EQ(Status(Ask("GET /", cookie)), 200);
+  EXPECT_EQ(Status(Ask("GET /", cookie_)), 200);
 }
 
 TEST_F(HostileTest, BodyOfARefusedRequestIsNotTheNextRequest) {
-  Start();
-  const std::string cookie = Login();
-  const std::string hidden = Request("GET /data/text", cookie);
+  const std::string hidden = Request("GET /data/text", cookie_);
   for (const std::string start : {"POST /", "PUT /data/x", "GET /data/text"}) {
     RawClient client(server_->port());
-    client.Send(Request(start, cookie, "", hidden));
+    client.Send(Request(start, cookie_, "", hidden));
     const auto reply = client.ReadReply();
     ASSERT_TRUE(reply);
     EXPECT_GE(reply->status, 400);
@@ -56,22 +52,20 @@ TEST_F(HostileTest, BodyOfARefusedRequestIsNotTheNextRequest) {
 }
 
 TEST_F(HostileTest, SizesAreLimited) {
-  Start();
-  const std::string cookie = Login();
-  EXPECT_EQ(Status(Ask("GET /", cookie, "X: " + std::string(9000, 'x') + "\r\n")), 431);
+  EXPECT_EQ(Status(Ask("GET /", cookie_, "X: " + std::string(9000, 'x') + "\r\n")), 431);
   std::string many;
   for (int i = 0; i < 2000; ++i) many += "A" + std::to_string(i) + ": b\r\n";
-  EXPECT_EQ(Status(Ask("GET /", cookie, many)), 431);
-  EXPECT_EQ(Status(Ask("GET /" + std::string(3000, 'a'), cookie)), 414);
-  EXPECT_EQ(Status(Ask("GET /" + std::string(100000, 'a'), cookie)), 431);
-  EXPECT_EQ(Status(Ask("PUT /data/x", cookie, "Origin: " + origin_ + "\r\nContent-Length: 99999999999\r\n")), 413);
-  EXPECT_EQ(Status(Ask("GET /", cookie)), 200);
+  EXPECT_EQ(Status(Ask("GET /", cookie_, many)), 431);
+  EXPECT_EQ(Status(Ask("GET /" + std::string(3000, 'a'), cookie_)), 414);
+  EXPECT_EQ(Status(Ask("GET /" + std::string(100000, 'a'), cookie_)), 431);
+  EXPECT_EQ(Status(Ask("PUT /data/x", cookie_, "Origin: " + origin_ + "\r\nContent-Length: 99999999999\r\n")), 413);
+  EXPECT_EQ(Status(Ask("GET /", cookie_)), 200);
 }
 
 TEST_F(HostileTest, ClientsThatDripBytesAreCutOff) {
   Start({.handshake_s = 0.4, .keep_alive_s = 0.4});
-  const std::string cookie = Login();
-  const std::string starts[] = {"GET / HTTP/1.1\r\nX: ", Request("PUT /data/x", cookie, "Origin: " + origin_ + "\r\nContent-Length: 100000\r\n"), ""};
+  const std::string starts[] = {"GET / HTTP/1.1\r\nX: ", Request("PUT /data/x", cookie_, "Origin: " + origin_ + "\r\nContent-Length: 100000\r\n"),
+                                ""};
   for (const std::string& start : starts) {
     RawClient client(server_->port());
     client.Send(start);
@@ -84,7 +78,7 @@ TEST_F(HostileTest, ClientsThatDripBytesAreCutOff) {
   }
   // Between two requests, too.
   RawClient waiting(server_->port());
-  waiting.Send(Request("GET /", cookie));
+  waiting.Send(Request("GET /", cookie_));
   EXPECT_EQ(Status(waiting.ReadReply()), 200);
   EXPECT_TRUE(waiting.ReadToEnd());
   EXPECT_TRUE(data_.saved.empty());
@@ -92,38 +86,35 @@ TEST_F(HostileTest, ClientsThatDripBytesAreCutOff) {
 
 TEST_F(HostileTest, ClientThatDoesNotReadItsAnswerIsCutOff) {
   Start({.handshake_s = 0.4});
-  const std::string cookie = Login();
   data_.file = std::filesystem::path(::testing::TempDir()) / "skyquilt_server_large.bin";
   std::ofstream(data_.file, std::ios::binary) << "";
   std::filesystem::resize_file(data_.file, 64U << 20U);
   RawClient client(server_->port(), 4096);
-  client.Send(Request("GET /data/file", cookie));
+  client.Send(Request("GET /data/file", cookie_));
   std::this_thread::sleep_for(std::chrono::milliseconds(1200));
   EXPECT_FALSE(client.ReadReply());
-  EXPECT_EQ(Status(Ask("GET /", cookie)), 200);
+  EXPECT_EQ(Status(Ask("GET /", cookie_)), 200);
   std::filesystem::remove(data_.file);
 }
 
 TEST_F(HostileTest, ClientThatReadsItsAnswerTooSlowlyIsCutOff) {
   // A rate that no client reaches after it has waited.
   Start({.slow_answer_s = 0.2, .min_answer_bytes_per_s = 1e9});
-  const std::string cookie = Login();
   data_.file = std::filesystem::path(::testing::TempDir()) / "skyquilt_server_slow.bin";
   std::ofstream(data_.file, std::ios::binary) << "";
   std::filesystem::resize_file(data_.file, 64U << 20U);
   RawClient client(server_->port(), 4096);
-  client.Send(Request("GET /data/file", cookie));
+  client.Send(Request("GET /data/file", cookie_));
   std::this_thread::sleep_for(std::chrono::milliseconds(400));
   EXPECT_FALSE(client.ReadReply()) << "reading goes on, but below the rate";
   EXPECT_TRUE(client.IsClosed());
-  EXPECT_EQ(Status(Ask("GET /data/text", cookie)), 200);
+  EXPECT_EQ(Status(Ask("GET /data/text", cookie_)), 200);
   std::filesystem::remove(data_.file);
 }
 
 TEST_F(HostileTest, TwoHundredConnectionsDoNotLockOthersOut) {
   Start({.max_connections = 32});
-  const std::string cookie = Login();
-  const auto client = OpenWebsocket(cookie);
+  const auto client = OpenWebsocket(cookie_);
   ASSERT_TRUE(client);
   std::vector<std::unique_ptr<RawClient>> strangers;
   for (int i = 0; i < 200; ++i) {
@@ -131,7 +122,7 @@ TEST_F(HostileTest, TwoHundredConnectionsDoNotLockOthersOut) {
     if (i % 2 == 0) strangers.back()->Send("GET / HTTP/1.1\r\n");
   }
   EXPECT_TRUE(IsServed(*client));
-  EXPECT_EQ(Status(Ask("GET /data/text", cookie)), 200);
+  EXPECT_EQ(Status(Ask("GET /data/text", cookie_)), 200);
   EXPECT_NE(Login(), "");
   int closed = 0;
   for (const auto& stranger : strangers) closed += stranger->IsClosed() ? 1 : 0;
@@ -140,11 +131,10 @@ TEST_F(HostileTest, TwoHundredConnectionsDoNotLockOthersOut) {
 
 TEST_F(HostileTest, ConnectionsWithACookieDoNotFillTheServerEither) {
   Start({.max_connections = 8});
-  const std::string cookie = Login();
   std::vector<std::unique_ptr<RawClient>> idle;
   for (int i = 0; i < 20; ++i) {
     idle.push_back(std::make_unique<RawClient>(server_->port()));
-    idle.back()->Send(Request("GET /", cookie));
+    idle.back()->Send(Request("GET /", cookie_));
     EXPECT_EQ(Status(idle.back()->ReadReply()), 200) << i;
   }
 }
@@ -152,11 +142,10 @@ TEST_F(HostileTest, ConnectionsWithACookieDoNotFillTheServerEither) {
 TEST_F(HostileTest, ClientThatNeverReadsIsBoundedAndDropped) {
   constexpr size_t kLimit = 1U << 20U;
   Start({.max_queued_bytes = kLimit});
-  const std::string cookie = Login();
-  const auto deaf = OpenWebsocket(cookie, true, 4096);
+  const auto deaf = OpenWebsocket(cookie_, true, 4096);
   ASSERT_TRUE(deaf);
   const ClientId deaf_id = handler_.newest;
-  const auto other = OpenWebsocket(cookie);
+  const auto other = OpenWebsocket(cookie_);
   ASSERT_TRUE(other);
   const auto frame = std::make_shared<const std::string>(100000, 'f');
   const auto deadline = Clock::now() + std::chrono::seconds(8);
@@ -178,9 +167,7 @@ TEST_F(HostileTest, WriteWithoutProgressEndsTheClient) {
 }
 
 TEST_F(HostileTest, MalformedFramesCloseTheirConnectionOnly) {
-  Start();
-  const std::string cookie = Login();
-  const auto other = OpenWebsocket(cookie);
+  const auto other = OpenWebsocket(cookie_);
   ASSERT_TRUE(other);
   const std::string text = kStopView;
   const std::pair<std::string, int> attacks[] = {
@@ -202,7 +189,7 @@ TEST_F(HostileTest, MalformedFramesCloseTheirConnectionOnly) {
       {std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xff", 10) + "abcd", 1009},
   };
   for (const auto& [bytes, code] : attacks) {
-    const auto client = OpenWebsocket(cookie);
+    const auto client = OpenWebsocket(cookie_);
     ASSERT_TRUE(client);
     client->Send(bytes);
     const int found = CloseCode(*client);
@@ -216,8 +203,7 @@ TEST_F(HostileTest, MalformedFramesCloseTheirConnectionOnly) {
 
 TEST_F(HostileTest, FloodOfEmptyFragmentsIsEnded) {
   Start({.handshake_s = 1.0});
-  const std::string cookie = Login();
-  const auto client = OpenWebsocket(cookie), other = OpenWebsocket(cookie);
+  const auto client = OpenWebsocket(cookie_), other = OpenWebsocket(cookie_);
   ASSERT_TRUE(client && other);
   client->Send(MakeFrame(1, "", {.fin = false}));
   std::string flood;
@@ -232,8 +218,6 @@ TEST_F(HostileTest, FloodOfEmptyFragmentsIsEnded) {
 }
 
 TEST_F(HostileTest, ServiceGoesOnAfterFileDescriptorsRanOut) {
-  Start();
-  const std::string cookie = Login();
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
   // A listening queue takes the connection although the server cannot accept it yet.
@@ -247,7 +231,7 @@ TEST_F(HostileTest, ServiceGoesOnAfterFileDescriptorsRanOut) {
     low.rlim_cur = static_cast<rlim_t>(next);
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &low), 0);
     client = std::make_unique<RawClient>(server_->port());
-    client->Send(Request("GET /", cookie));
+    client->Send(Request("GET /", cookie_));
     std::this_thread::sleep_for(std::chrono::milliseconds(150));
     EXPECT_FALSE(client->IsClosed());
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
@@ -256,13 +240,11 @@ TEST_F(HostileTest, ServiceGoesOnAfterFileDescriptorsRanOut) {
 }
 
 TEST_F(HostileTest, ServerEndsAtOnceWithOpenConnections) {
-  Start();
-  const std::string cookie = Login();
   RawClient silent(server_->port()), half(server_->port()), waiting(server_->port());
   half.Send("GET / HTTP/1.1\r\n");
-  waiting.Send(Request("GET /", cookie));
+  waiting.Send(Request("GET /", cookie_));
   EXPECT_EQ(Status(waiting.ReadReply()), 200);
-  const auto client = OpenWebsocket(cookie), deaf = OpenWebsocket(cookie, true, 4096);
+  const auto client = OpenWebsocket(cookie_), deaf = OpenWebsocket(cookie_, true, 4096);
   ASSERT_TRUE(client && deaf);
   server_->Send(handler_.newest, {.binary = true, .bytes = std::make_shared<const std::string>(30U << 20U, 'f')});
   const auto begin = Clock::now();

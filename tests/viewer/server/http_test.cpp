@@ -1,9 +1,8 @@
 // The server over HTTP: launch link, cookies, hosts, methods, paths, sizes, files.
-#include <algorithm>
-#include <atomic>
 #include <fstream>
 
 #include "core/base/errors.h"
+#include "tests/support/error_of.h"
 #include "tests/viewer/server/server_fixture.h"
 
 namespace skyquilt::viewer {
@@ -12,7 +11,6 @@ namespace {
 using HttpTest = ServerTest;
 
 TEST_F(HttpTest, LinkIsExchangedForACookieOnce) {
-  Start();
   std::mutex mutex;
   std::string next;
   server_->OnLinkUsed([&](Right right, const std::string& link) {
@@ -45,14 +43,12 @@ TEST_F(HttpTest, LinkIsExchangedForACookieOnce) {
 }
 
 TEST_F(HttpTest, HeadDoesNotUseUpTheLink) {
-  Start();
   const std::string target = LinkTarget();
   EXPECT_EQ(Status(Ask("HEAD " + target, "")), 403);
   EXPECT_EQ(LinkTarget(), target);
 }
 
 TEST_F(HttpTest, NothingWithoutAValidCookie) {
-  Start();
   const std::string good = Login();
   const std::string name = good.substr(0, good.find('='));
   for (const std::string& cookie : {std::string(), name + "=", name + "=" + std::string(64, '0'), good + "0", "x" + good, std::string("garbage")}) {
@@ -66,12 +62,10 @@ TEST_F(HttpTest, NothingWithoutAValidCookie) {
 }
 
 TEST_F(HttpTest, GuessingTokensIsStopped) {
-  Start();
-  const std::string cookie = Login();
   for (int i = 0; i < 20; ++i) EXPECT_EQ(Status(Ask("GET /?token=" + std::to_string(i), "")), 403);
   EXPECT_EQ(Status(Ask("GET /?token=1", "")), 429);
-  EXPECT_EQ(Status(Ask("GET /?token=x", cookie)), 303) << "an old link";
-  EXPECT_EQ(Status(Ask("GET /", cookie)), 200);
+  EXPECT_EQ(Status(Ask("GET /?token=x", cookie_)), 303) << "an old link";
+  EXPECT_EQ(Status(Ask("GET /", cookie_)), 200);
   EXPECT_EQ(Status(Ask("GET " + LinkTarget(), "")), 303) << "strangers must not lock out whoever has the link";
 }
 
@@ -99,11 +93,9 @@ TEST_F(HttpTest, ForeignHostsAreRefusedFirst) {
 }
 
 TEST_F(HttpTest, EveryAnswerHasTheSecurityHeaders) {
-  Start();
-  const std::string cookie = Login();
-  for (const auto& reply : {Ask("GET /", cookie), Ask("GET /", ""), Ask("GET /data/text", cookie), Ask("GET /data/nothing", cookie),
-                            Ask("DELETE /", cookie), AskRaw("nonsense\r\n\r\n"), AskRaw("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"),
-                            AskRaw(UpgradeRequest(cookie, origin_), true), Ask("GET /?token=x", "")}) {
+  for (const auto& reply : {Ask("GET /", cookie_), Ask("GET /", ""), Ask("GET /data/text", cookie_), Ask("GET /data/nothing", cookie_),
+                            Ask("DELETE /", cookie_), AskRaw("nonsense\r\n\r\n"), AskRaw("GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n"),
+                            AskRaw(UpgradeRequest(cookie_, origin_), true), Ask("GET /?token=x", "")}) {
     ASSERT_TRUE(reply);
     const std::string policy = reply->headers.count("content-security-policy") != 0 ? reply->headers.at("content-security-policy") : "";
     EXPECT_TRUE(policy.starts_with("default-src 'self'; ")) << reply->status;
@@ -116,14 +108,12 @@ TEST_F(HttpTest, EveryAnswerHasTheSecurityHeaders) {
     EXPECT_EQ(reply->headers.at("cross-origin-resource-policy"), "same-origin");
     EXPECT_EQ(reply->headers.count("access-control-allow-origin"), 0U);
   }
-  EXPECT_NE(Ask("GET /", cookie)->headers.at("content-security-policy").find("connect-src 'self' blob: ws://" + host_ + ";"), std::string::npos);
-  EXPECT_EQ(Ask("GET /data/text", cookie)->headers.at("cache-control"), "no-store");
-  EXPECT_EQ(Ask("GET /data/cached", cookie)->headers.at("cache-control"), "private, max-age=3600");
+  EXPECT_NE(Ask("GET /", cookie_)->headers.at("content-security-policy").find("connect-src 'self' blob: ws://" + host_ + ";"), std::string::npos);
+  EXPECT_EQ(Ask("GET /data/text", cookie_)->headers.at("cache-control"), "no-store");
+  EXPECT_EQ(Ask("GET /data/cached", cookie_)->headers.at("cache-control"), "private, max-age=3600");
 }
 
 TEST_F(HttpTest, PathsThatLeaveTheFixedNamesReachNothing) {
-  Start();
-  const std::string cookie = Login();
   for (const std::string path : {"/data/../text",
                                  "/data/%2e%2e/text",
                                  "/data/..%2ftext",
@@ -145,43 +135,38 @@ TEST_F(HttpTest, PathsThatLeaveTheFixedNamesReachNothing) {
                                  "//etc/passwd",
                                  "/data/....//text",
                                  "/data/file:///etc/passwd"}) {
-    EXPECT_EQ(Status(Ask("GET " + path, cookie)), 400) << path;
-    EXPECT_EQ(Status(Ask("PUT " + path, cookie, "Origin: " + origin_ + "\r\n", "x")), 400) << path;
+    EXPECT_EQ(Status(Ask("GET " + path, cookie_)), 400) << path;
+    EXPECT_EQ(Status(Ask("PUT " + path, cookie_, "Origin: " + origin_ + "\r\n", "x")), 400) << path;
   }
   for (const std::string path : {"/etc/passwd", "/data", "/data/", "/index.html", "/app.js/", "/Data/text"}) {
-    EXPECT_EQ(Status(Ask("GET " + path, cookie)), 404) << path;
+    EXPECT_EQ(Status(Ask("GET " + path, cookie_)), 404) << path;
   }
   EXPECT_TRUE(data_.asked.empty());
   EXPECT_TRUE(data_.saved.empty());
 }
 
 TEST_F(HttpTest, DataIsAskedWithPathAndQuery) {
-  Start();
-  const std::string cookie = Login();
-  const auto reply = Ask("GET /data/text?a=%20", cookie);
+  const auto reply = Ask("GET /data/text?a=%20", cookie_);
   EXPECT_EQ(Status(reply), 200);
   EXPECT_EQ(reply->body, "hello");
   EXPECT_EQ(reply->headers.at("content-type"), "text/plain");
   EXPECT_EQ(data_.asked, std::vector<std::string>({"text?a=%20"}));
-  EXPECT_EQ(Status(Ask("GET /data/" + std::string(201, 'a'), cookie)), 404);
-  EXPECT_EQ(Status(Ask("GET /data/text?" + std::string(101, 'a'), cookie)), 414);
+  EXPECT_EQ(Status(Ask("GET /data/" + std::string(201, 'a'), cookie_)), 404);
+  EXPECT_EQ(Status(Ask("GET /data/text?" + std::string(101, 'a'), cookie_)), 414);
   EXPECT_EQ(data_.asked.size(), 1U);
 }
 
 TEST_F(HttpTest, SourceThatThrowsIsAnErrorWithoutItsReason) {
-  Start();
-  const std::string cookie = Login();
-  const auto reply = Ask("GET /data/throws", cookie);
+  const auto reply = Ask("GET /data/throws", cookie_);
   EXPECT_EQ(Status(reply), 500);
   EXPECT_EQ(reply->body.find("secret"), std::string::npos);
-  EXPECT_EQ(Status(Ask("GET /data/text", cookie)), 200);
-  const auto split = Ask("GET /data/split", cookie);
+  EXPECT_EQ(Status(Ask("GET /data/text", cookie_)), 200);
+  const auto split = Ask("GET /data/split", cookie_);
   EXPECT_EQ(Status(split), 200);
   EXPECT_EQ(split->headers.count("set-cookie"), 0U);
 }
 
 TEST_F(HttpTest, MethodsThatAreNotAllowed) {
-  Start();
   const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
   for (const std::string start :
        {"POST /data/text", "DELETE /data/text", "PUT /", "PUT /app.js", "OPTIONS /data/text", "PATCH /", "BREW /", "TRACE /"}) {
@@ -195,20 +180,17 @@ TEST_F(HttpTest, MethodsThatAreNotAllowed) {
 }
 
 TEST_F(HttpTest, PutOnlyFromTheOwnPage) {
-  Start();
-  const std::string cookie = Login();
   for (const std::string& origin : {std::string(), std::string("Origin: null\r\n"), std::string("Origin: http://evil.example\r\n"),
                                     "Origin: https://" + host_ + "\r\n", "Origin: http://localhost:" + std::to_string(server_->port()) + "\r\n",
                                     "Origin: " + origin_ + ".evil.example\r\n", "Origin: " + origin_ + "\r\nOrigin: http://evil.example\r\n"}) {
-    EXPECT_EQ(Status(Ask("PUT /data/gcp.json", cookie, origin, "{}")), 403) << origin;
+    EXPECT_EQ(Status(Ask("PUT /data/gcp.json", cookie_, origin, "{}")), 403) << origin;
   }
   EXPECT_TRUE(data_.saved.empty());
-  EXPECT_EQ(Status(Ask("PUT /data/gcp.json", cookie, "Origin: " + origin_ + "\r\n", "{}")), 204);
+  EXPECT_EQ(Status(Ask("PUT /data/gcp.json", cookie_, "Origin: " + origin_ + "\r\n", "{}")), 204);
   EXPECT_EQ(data_.saved["gcp.json"], "{}");
 }
 
 TEST_F(HttpTest, TagsOfDocumentsPass) {
-  Start();
   const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
   const auto kept = Ask("GET /data/kept", cookie);
   ASSERT_EQ(Status(kept), 200);
@@ -225,7 +207,6 @@ TEST_F(HttpTest, TagsOfDocumentsPass) {
 }
 
 TEST_F(HttpTest, TagOfOneRequestIsNotThatOfTheNext) {
-  Start();
   const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
   RawClient client(server_->port());
   for (const std::string line : {"If-Match: \"a1\"\r\n", ""}) {
@@ -236,7 +217,6 @@ TEST_F(HttpTest, TagOfOneRequestIsNotThatOfTheNext) {
 }
 
 TEST_F(HttpTest, PutOfAMegabyteAndMore) {
-  Start();
   const std::string cookie = Login(), origin = "Origin: " + origin_ + "\r\n";
   const std::string body(1U << 20U, 'm');
   EXPECT_EQ(Status(Ask("PUT /data/big", cookie, origin, body)), 204);
@@ -252,10 +232,8 @@ TEST_F(HttpTest, PutOfAMegabyteAndMore) {
 }
 
 TEST_F(HttpTest, ExpectContinueIsAnswered) {
-  Start();
-  const std::string cookie = Login();
   RawClient client(server_->port());
-  client.Send(Request("PUT /data/x", cookie, "Origin: " + origin_ + "\r\nExpect: 100-continue\r\nContent-Length: 3\r\n"));
+  client.Send(Request("PUT /data/x", cookie_, "Origin: " + origin_ + "\r\nExpect: 100-continue\r\nContent-Length: 3\r\n"));
   EXPECT_EQ(Status(client.ReadReply()), 100);
   client.Send("abc");
   EXPECT_EQ(Status(client.ReadReply()), 204);
@@ -263,15 +241,13 @@ TEST_F(HttpTest, ExpectContinueIsAnswered) {
 }
 
 TEST_F(HttpTest, KeepAliveHeadAndPipelinedRequests) {
-  Start();
-  const std::string cookie = Login();
   RawClient client(server_->port());
-  client.Send(Request("HEAD /data/text", cookie));
+  client.Send(Request("HEAD /data/text", cookie_));
   const auto head = client.ReadReply(true);
   ASSERT_EQ(Status(head), 200);
   EXPECT_EQ(head->headers.at("content-length"), "5");
   EXPECT_EQ(head->headers.at("connection"), "keep-alive");
-  client.Send(Request("GET /data/text", cookie) + Request("GET /app.js", cookie) + Request("GET /", cookie, "Connection: close\r\n"));
+  client.Send(Request("GET /data/text", cookie_) + Request("GET /app.js", cookie_) + Request("GET /", cookie_, "Connection: close\r\n"));
   EXPECT_EQ(client.ReadReply()->body, "hello");
   EXPECT_EQ(client.ReadReply()->body, "let a = 1;");
   EXPECT_EQ(client.ReadReply()->headers.at("connection"), "close");
@@ -279,40 +255,32 @@ TEST_F(HttpTest, KeepAliveHeadAndPipelinedRequests) {
 }
 
 TEST_F(HttpTest, FilesAreSentWholeAndMissingOnesAreNotFound) {
-  Start();
-  const std::string cookie = Login();
   data_.file = std::filesystem::path(::testing::TempDir()) / "skyquilt_server_test.glb";
   std::string content(3U << 20U, '\0');
   for (size_t i = 0; i < content.size(); ++i) content[i] = static_cast<char>(i * 2654435761U >> 13U);
   std::ofstream(data_.file, std::ios::binary) << content;
   RawClient client(server_->port());
-  client.Send(Request("GET /data/file", cookie));
+  client.Send(Request("GET /data/file", cookie_));
   const auto reply = client.ReadReply();
   ASSERT_EQ(Status(reply), 200);
   EXPECT_TRUE(reply->body == content);
-  client.Send(Request("HEAD /data/file", cookie));
+  client.Send(Request("HEAD /data/file", cookie_));
   EXPECT_EQ(client.ReadReply(true)->headers.at("content-length"), std::to_string(content.size()));
   std::ofstream(data_.file, std::ios::binary | std::ios::trunc).close();
-  client.Send(Request("GET /data/file", cookie));
+  client.Send(Request("GET /data/file", cookie_));
   EXPECT_EQ(client.ReadReply()->headers.at("content-length"), "0");
   std::filesystem::remove(data_.file);
-  client.Send(Request("GET /data/file", cookie));
+  client.Send(Request("GET /data/file", cookie_));
   EXPECT_EQ(Status(client.ReadReply()), 404);
-  client.Send(Request("GET /data/folder", cookie));
+  client.Send(Request("GET /data/folder", cookie_));
   EXPECT_EQ(Status(client.ReadReply()), 404);
 }
 
 TEST_F(HttpTest, PortInUseAndForeignAddressesAreUsageErrors) {
-  Start();
   RecordingHandler handler;
   RecordingData data;
   const auto message = [&](const ServerOptions& options) -> std::string {
-    try {
-      const Server second(options, handler, data);
-    } catch (const base::UsageError& error) {
-      return error.what();
-    }
-    return "";
+    return UsageErrorOf([&] { const Server second(options, handler, data); });
   };
   const std::string in_use = message({.port = server_->port()});
   EXPECT_NE(in_use.find(std::to_string(server_->port())), std::string::npos);
@@ -324,7 +292,6 @@ TEST_F(HttpTest, PortInUseAndForeignAddressesAreUsageErrors) {
 }
 
 TEST_F(HttpTest, PortCanBeUsedAgainAtOnce) {
-  Start();
   const int port = server_->port();
   RawClient client(port);
   client.Send(Request("GET /", Login()));

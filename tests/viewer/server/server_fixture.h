@@ -91,12 +91,16 @@ class RecordingData : public DataSource {
 
 class ServerTest : public ::testing::Test {
  protected:
-  void Start(ServerOptions options = {}) {
+  void SetUp() override { Start({}); }
+  // A server with these options instead, and a login where all may look.
+  void Start(ServerOptions options) {
+    server_.reset();
     options.assets = {{"/", "text/html; charset=utf-8", "<p>front end</p>"}, {"/app.js", "text/javascript; charset=utf-8", "let a = 1;"}};
     server_ = std::make_unique<Server>(options, handler_, data_);
     handler_.server = server_.get();
     host_ = "127.0.0.1:" + std::to_string(server_->port());
     origin_ = "http://" + host_;
+    if (options.rights == ServerOptions().rights) cookie_ = Login();
   }
   void TearDown() override { server_.reset(); }
 
@@ -168,7 +172,7 @@ class ServerTest : public ::testing::Test {
   RecordingHandler handler_;
   RecordingData data_;
   std::unique_ptr<Server> server_;
-  std::string host_, origin_;
+  std::string host_, origin_, cookie_;
 };
 
 }  // namespace skyquilt::viewer

@@ -1,5 +1,4 @@
 // Uploads: large bodies, a limited number at a time, and clients that do not finish them.
-#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -21,7 +20,6 @@ class UploadTest : public ServerTest {
     return Request("PUT /data/tour/assets/" + name, cookie_,
                    "Origin: " + origin_ + "\r\n" + extra + "Content-Length: " + std::to_string(bytes) + "\r\n");
   }
-  std::string cookie_;
 };
 
 TEST_F(UploadTest, FiftyMebibytesArriveWholeAndNoByteMore) {

@@ -1,5 +1,4 @@
 // The WebSocket: upgrade, hello, messages in both directions, limits.
-#include <atomic>
 #include <thread>
 
 #include "tests/viewer/server/server_fixture.h"
@@ -12,19 +11,17 @@ constexpr const char* kStop = R"({"type":"stop","seq":7})";
 constexpr const char* kBad = R"({"type":"nonsense"})";
 
 TEST_F(WebsocketTest, UpgradeNeedsCookieOriginAndPath) {
-  Start();
-  const std::string cookie = Login();
   EXPECT_EQ(Status(AskRaw(UpgradeRequest("", origin_))), 403);
-  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie + "x", origin_))), 403);
+  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie_ + "x", origin_))), 403);
   for (const std::string& origin : {std::string(), std::string("null"), std::string("http://evil.example"), "https://" + host_,
                                     "http://localhost:" + std::to_string(server_->port()), origin_ + "0"}) {
-    EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie, origin))), 403) << origin;
+    EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie_, origin))), 403) << origin;
   }
-  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie, origin_, "/"))), 200);
-  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie, origin_, "/data/text"))), 200);
-  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie, origin_, "/ws/x"))), 404);
-  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie, origin_) + MakeFrame(1, kHello))), 400);
-  const auto reply = AskRaw(UpgradeRequest(cookie, origin_), true);
+  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie_, origin_, "/"))), 200);
+  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie_, origin_, "/data/text"))), 200);
+  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie_, origin_, "/ws/x"))), 404);
+  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie_, origin_) + MakeFrame(1, kHello))), 400);
+  const auto reply = AskRaw(UpgradeRequest(cookie_, origin_), true);
   ASSERT_EQ(Status(reply), 101);
   EXPECT_EQ(reply->headers.at("sec-websocket-accept"), "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
   EXPECT_EQ(reply->headers.count("sec-websocket-extensions"), 0U);
@@ -32,7 +29,6 @@ TEST_F(WebsocketTest, UpgradeNeedsCookieOriginAndPath) {
 }
 
 TEST_F(WebsocketTest, MessagesReachTheHandlerAndTextsComeBack) {
-  Start();
   auto client = OpenWebsocket(Login());
   ASSERT_TRUE(client);
   EXPECT_EQ(server_->clients(), 1);
@@ -50,11 +46,9 @@ TEST_F(WebsocketTest, MessagesReachTheHandlerAndTextsComeBack) {
 }
 
 TEST_F(WebsocketTest, FirstMessageMustBeHelloInThisVersion) {
-  Start();
-  const std::string cookie = Login();
   for (const std::string text :
        {R"({"type":"hello","version":2})", R"({"type":"hello"})", kStop, kBad, "", "not json", R"({"type":"hello","version":1)"}) {
-    const auto client = OpenWebsocket(cookie, false);
+    const auto client = OpenWebsocket(cookie_, false);
     ASSERT_TRUE(client);
     client->Send(MakeFrame(1, text));
     EXPECT_EQ(CloseCode(*client), 1002) << text;
@@ -81,7 +75,6 @@ TEST_F(WebsocketTest, SilentClientIsPingedThenClosed) {
 }
 
 TEST_F(WebsocketTest, BadMessagesAreAnsweredAndTenInARowClose) {
-  Start();
   const auto client = OpenWebsocket(Login());
   ASSERT_TRUE(client);
   for (int round = 0; round < 3; ++round) {
@@ -95,7 +88,6 @@ TEST_F(WebsocketTest, BadMessagesAreAnsweredAndTenInARowClose) {
 }
 
 TEST_F(WebsocketTest, BinaryMessagesClose) {
-  Start();
   const auto client = OpenWebsocket(Login());
   ASSERT_TRUE(client);
   client->Send(MakeFrame(2, kStop));
@@ -104,8 +96,7 @@ TEST_F(WebsocketTest, BinaryMessagesClose) {
 
 TEST_F(WebsocketTest, TooManyMessagesOrPingsClose) {
   Start({.max_messages_per_s = 5});
-  const std::string cookie = Login();
-  const auto talker = OpenWebsocket(cookie), pinger = OpenWebsocket(cookie), calm = OpenWebsocket(cookie);
+  const auto talker = OpenWebsocket(cookie_), pinger = OpenWebsocket(cookie_), calm = OpenWebsocket(cookie_);
   ASSERT_TRUE(talker && pinger && calm);
   for (int i = 0; i < 40; ++i) talker->Send(MakeFrame(1, kStop));
   EXPECT_EQ(CloseCode(*talker), 1008);
@@ -115,9 +106,7 @@ TEST_F(WebsocketTest, TooManyMessagesOrPingsClose) {
 }
 
 TEST_F(WebsocketTest, HandlerThatThrowsClosesItsClientOnly) {
-  Start();
-  const std::string cookie = Login();
-  const auto first = OpenWebsocket(cookie), second = OpenWebsocket(cookie);
+  const auto first = OpenWebsocket(cookie_), second = OpenWebsocket(cookie_);
   ASSERT_TRUE(first && second);
   handler_.throws = true;
   first->Send(MakeFrame(1, kStop));
@@ -128,24 +117,21 @@ TEST_F(WebsocketTest, HandlerThatThrowsClosesItsClientOnly) {
 
 TEST_F(WebsocketTest, NumberOfClientsIsLimited) {
   Start({.max_clients = 2});
-  const std::string cookie = Login();
-  auto first = OpenWebsocket(cookie);
-  const auto second = OpenWebsocket(cookie);
+  auto first = OpenWebsocket(cookie_);
+  const auto second = OpenWebsocket(cookie_);
   ASSERT_TRUE(first && second);
-  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie, origin_))), 503);
+  EXPECT_EQ(Status(AskRaw(UpgradeRequest(cookie_, origin_))), 503);
   EXPECT_TRUE(IsServed(*second));
   first.reset();
   ASSERT_TRUE(handler_.WaitFor([&] { return handler_.closed.size() == 1; }));
-  EXPECT_TRUE(OpenWebsocket(cookie));
+  EXPECT_TRUE(OpenWebsocket(cookie_));
 }
 
 TEST_F(WebsocketTest, ManyThreadsSendToSeveralClientsInOrder) {
-  Start();
-  const std::string cookie = Login();
   std::vector<std::unique_ptr<RawClient>> clients;
   std::vector<ClientId> ids;
   for (int i = 0; i < 3; ++i) {
-    clients.push_back(OpenWebsocket(cookie));
+    clients.push_back(OpenWebsocket(cookie_));
     ASSERT_TRUE(clients.back());
     ids.push_back(handler_.newest);
   }
@@ -175,7 +161,6 @@ TEST_F(WebsocketTest, ManyThreadsSendToSeveralClientsInOrder) {
 }
 
 TEST_F(WebsocketTest, LargeMessageArrivesInOneFrame) {
-  Start();
   const auto client = OpenWebsocket(Login());
   ASSERT_TRUE(client);
   const std::string bytes(9U << 20U, 'f');

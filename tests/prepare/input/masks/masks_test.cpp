@@ -7,10 +7,8 @@
 #include <chrono>
 #include <set>
 
-#include "core/base/file.h"
 #include "core/base/random.h"
 #include "prepare/input/input_folder.h"
-#include "prepare/input/masks/mask_files.h"
 #include "prepare/input/masks/mask_index.h"
 #include "tests/prepare/input/made_folder.h"
 #include "tests/support/error_of.h"

@@ -7,10 +7,9 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "core/linear/linear.h"
 #include "tests/prepare/poses/seed/made_survey.h"
+#include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::test {
@@ -257,9 +256,7 @@ TEST_F(SeedPosesTest, PointsOfTwoPhotosFillGapsOnly) {
 
 TEST_F(SeedPosesTest, StopsWhenAsked) {
   const MadeSurvey made = MakeSurvey({.strips = 2, .per_strip = 3});
-  base::RequestCancel();
-  EXPECT_THROW(SeedPoses(made.input, threads_, &reason_), base::Interrupted);
-  base::ClearCancel();
+  ExpectStopsWhenAsked([&] { SeedPoses(made.input, threads_, &reason_); });
 }
 
 TEST_F(SeedPosesTest, WrittenModelIsReadBack) {

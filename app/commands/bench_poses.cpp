@@ -10,7 +10,6 @@
 #include "bench/poses/poses_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/log.h"
 
 namespace skyquilt::app {
 namespace {

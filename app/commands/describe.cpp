@@ -1,7 +1,6 @@
 #include "app/commands/describe.h"
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/commands/describe_number.h"

@@ -10,7 +10,6 @@
 #include "bench/numerics/groups.h"
 #include "bench/numerics/hamlet_flight.h"
 #include "bench/numerics/quiet_stages.h"
-#include "core/base/file.h"
 #include "core/geo/enu_frame.h"
 #include "core/survey/survey.h"
 

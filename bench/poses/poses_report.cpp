@@ -4,7 +4,6 @@
 #include "bench/poses/poses_bench.h"
 #include "core/base/amounts.h"
 #include "core/base/json_text.h"
-#include "core/base/log.h"
 #include "core/base/system.h"
 
 namespace skyquilt::bench {

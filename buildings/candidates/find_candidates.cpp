@@ -1,7 +1,6 @@
 #include "buildings/candidates/find_candidates.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>

@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "coordinator/project/settings.h"
 #include "core/comm/communicator.h"
 
 namespace skyquilt::coordinator {

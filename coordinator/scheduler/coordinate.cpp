@@ -14,7 +14,6 @@
 #include "coordinator/scheduler/rank_speeds.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
-#include "core/base/log.h"
 
 namespace skyquilt::coordinator {
 namespace {

@@ -1,7 +1,5 @@
 #include "coordinator/stages/stage_bodies.h"
 
-#include <set>
-
 #include "coordinator/poses/rank_tasks.h"
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"

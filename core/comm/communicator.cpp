@@ -1,6 +1,5 @@
 #include "core/comm/communicator.h"
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <deque>

@@ -1,7 +1,6 @@
 #include "evaluate/surface/surface_json.h"
 
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 

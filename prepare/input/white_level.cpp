@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/base/errors.h"
-#include "core/base/log.h"
 
 namespace skyquilt::prepare::input {
 namespace {

@@ -1,6 +1,5 @@
 #include "prepare/poses/match_chunk.h"
 
-#include <cstring>
 #include <string_view>
 #include <utility>
 

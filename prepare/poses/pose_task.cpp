@@ -7,7 +7,6 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/log.h"
 #include "core/base/system.h"
 #include "core/survey/colmap_merge.h"
 #include "prepare/poses/match_chunk.h"

@@ -1,7 +1,6 @@
 #include "surface/files/las_writer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/base/amounts.h"

@@ -1,7 +1,6 @@
 #include "surface/files/tileset_writer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/amounts.h"

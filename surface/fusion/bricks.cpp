@@ -1,6 +1,5 @@
 #include "surface/fusion/bricks.h"
 
-#include <array>
 #include <cmath>
 
 #include "core/base/cancel.h"

@@ -1,7 +1,6 @@
 #include "tour/export/tour_video.h"
 
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "core/base/log.h"

@@ -1,6 +1,5 @@
 #include "tour/pictures/make_pictures.h"
 
-#include <algorithm>
 #include <chrono>
 #include <map>
 #include <set>

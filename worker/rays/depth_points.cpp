@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <span>
 
 #include "core/base/mix_bits.h"
 #include "core/camera/pixel_pitch.h"

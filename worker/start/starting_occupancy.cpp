@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/render/march.h"
-#include "core/scene/scene.h"
 #include "worker/start/view_counter.h"
 
 namespace skyquilt::worker {

@@ -1,5 +1,7 @@
 #include "prepare/input/white_level.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

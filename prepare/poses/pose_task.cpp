@@ -1,5 +1,6 @@
 #include "prepare/poses/pose_task.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>

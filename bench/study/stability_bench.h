@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/study/study_benches.h"
+
 namespace skyquilt::bench {
 
 // What is done to a survey beside SurveyEdits(): another height, or a tiny batch.

@@ -4,7 +4,7 @@
 
 #include "buildings/fit/fit_points.h"
 #include "buildings/fit/fit_shape.h"
-#include "buildings/fit/wall_pieces.h"
+#include "buildings/fit/wall_strips.h"
 
 namespace skyquilt::buildings {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "core/base/errors.h"
 #include "core/camera/distortion.h"
-#include "core/camera/lens.h"
 
 namespace skyquilt::camera {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/base/partial_path.h"
+#include "core/base/output_file.h"
 #include "core/gis/gdal_support.h"
 
 namespace skyquilt::gis {

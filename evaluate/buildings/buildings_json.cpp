@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "evaluate/json_members.h"
 
 namespace skyquilt::evaluate::buildings {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "evaluate/control/control_summary.h"
 
 namespace skyquilt::evaluate::control {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 
 namespace skyquilt::evaluate::metrics {
 namespace {

@@ -2,7 +2,7 @@
 #include <span>
 
 #include "core/base/json_text.h"
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "evaluate/buildings/buildings_json.h"
 #include "evaluate/control/control_json.h"
 #include "evaluate/metrics/class_json.h"

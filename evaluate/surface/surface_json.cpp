@@ -7,7 +7,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "evaluate/json_members.h"
 
 namespace skyquilt::evaluate::surface {

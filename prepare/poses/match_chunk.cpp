@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/base/cancel.h"
-#include "core/base/crc32.h"
+#include "core/base/deflate.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/cancel.h"
-#include "core/base/mix_bits.h"
+#include "core/base/random.h"
 
 namespace skyquilt::surface {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "core/base/errors.h"
 #include "surface/fusion/extract.h"
-#include "surface/fusion/key_range.h"
+#include "surface/fusion/fusion_lattice.h"
 
 namespace skyquilt::surface {
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "core/base/mix_bits.h"
+#include "core/base/random.h"
 #include "surface/mesh/border_loops.h"
 #include "surface/mesh/edge_uses.h"
 #include "surface/mesh/hole_patch.h"

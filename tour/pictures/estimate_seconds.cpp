@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tour/pictures/picture_rays.h"
+#include "tour/pictures/render_picture.h"
 
 namespace skyquilt::tour {
 namespace {

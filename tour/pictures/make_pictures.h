@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "tour/pictures/picture_field.h"
 #include "tour/pictures/picture_request.h"
+#include "tour/pictures/render_picture.h"
 
 namespace skyquilt::tour {
 

@@ -1,4 +1,4 @@
-#include "core/survey/control_fit_json.h"
+#include "core/survey/control_fit.h"
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 
 namespace skyquilt::survey {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "coordinator/project/settings.h"
 #include "core/comm/communicator.h"
 
 namespace skyquilt::coordinator {

@@ -10,6 +10,7 @@
 #include <ogrsf_frmts.h>
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,7 @@
 #include "core/base/output_file.h"
 #include "core/geo/height_reference.h"
 #include "core/geo/utm.h"
+#include "core/image/image.h"
 
 namespace skyquilt::gis::internal {
 
@@ -50,6 +52,16 @@ inline void CloseWritten(Dataset* dataset, const std::filesystem::path& file) {
   CPLErrorReset();
   dataset->reset();
   if (CPLGetLastErrorType() >= CE_Failure) FailWriting(file, "cannot be completed");
+}
+
+// Pixels without a value become NaN.
+inline void ForgetNoData(GDALDataset* dataset, image::ImageF* image) {
+  int has_nodata = FALSE;
+  const double nodata = dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);
+  if (!has_nodata) return;
+  for (float& value : image->data) {
+    if (value == static_cast<float>(nodata)) value = std::numeric_limits<float>::quiet_NaN();
+  }
 }
 
 // A progress callback that ends GDAL's work when the program is asked to stop.

@@ -63,9 +63,6 @@ struct Problem {
 };
 
 // The geo-reference part of survey.json. Numbers that are NaN are stored as null.
-nlohmann::ordered_json NumberOrNull(double value);
-double NanIfNull(const nlohmann::json& value);
-
 nlohmann::ordered_json ToJson(const geo::PlaceAccuracy& accuracy);
 nlohmann::ordered_json ToJson(const GeoFit& fit);
 nlohmann::ordered_json ToJson(const FlightChecks& checks);

@@ -14,7 +14,7 @@ namespace skyquilt::evaluate::metrics {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using survey::NumberOrNull;
+using base::NumberOrNull;
 
 Json BytesOrNull(int64_t bytes) {
   return bytes > 0 ? Json(bytes) : Json(nullptr);

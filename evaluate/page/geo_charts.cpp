@@ -8,6 +8,7 @@
 #include "core/page/curve_chart.h"
 #include "evaluate/control/tag_positions.h"
 #include "evaluate/page/geo_section.h"
+#include "evaluate/page/page_parts.h"
 #include "evaluate/page/time_axis.h"
 
 namespace skyquilt::evaluate::page {

@@ -3,11 +3,13 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "core/brightness/response.h"
 #include "core/camera/camera.h"
 #include "core/image/image.h"
 #include "core/metrics/psnr.h"
+#include "core/scene/scene.h"
 
 namespace skyquilt::evaluate::photos {
 

@@ -3,7 +3,7 @@
 
 #include "bench/numerics/edge_survey.h"
 #include "bench/numerics/groups.h"
-#include "bench/numerics/quiet_stages.h"
+#include "bench/numerics/hamlet_flight.h"
 #include "bench/numerics/synthetic_trainer.h"
 
 namespace skyquilt::bench {

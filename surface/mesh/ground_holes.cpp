@@ -5,7 +5,6 @@
 
 #include "core/base/random.h"
 #include "surface/mesh/border_loops.h"
-#include "surface/mesh/edge_uses.h"
 #include "surface/mesh/hole_patch.h"
 #include "surface/mesh/mesh_tools.h"
 #include "surface/mesh/vectors.h"

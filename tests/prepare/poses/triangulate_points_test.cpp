@@ -12,7 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/order_statistics.h"
 #include "core/linear/linear.h"
-#include "prepare/poses/pose_pairs.h"
+#include "prepare/poses/pairs.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 

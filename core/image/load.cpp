@@ -166,14 +166,14 @@ void ReadImageSize(const std::filesystem::path& file, int* width, int* height) {
     return;
   }
   std::string content = ReadStart(file);
-  if (ParseJpeg(AsBytes(content), true).width == 0 && !StartsWith(content, "\x89PNG")) content = base::ReadFile(file);
+  if (ParseJpeg(AsBytes(content), true).width == 0 && !content.starts_with("\x89PNG")) content = base::ReadFile(file);
   *width = 0;
   *height = 0;
   const JpegStructure jpeg = ParseJpeg(AsBytes(content), true);
   if (jpeg.is_jpeg) {
     *width = jpeg.width;
     *height = jpeg.height;
-  } else if (StartsWith(content, "\x89PNG\r\n\x1A\n") && content.size() >= 24 && content.substr(12, 4) == "IHDR") {
+  } else if (content.starts_with("\x89PNG\r\n\x1A\n") && content.size() >= 24 && content.substr(12, 4) == "IHDR") {
     const auto big_endian = [&](size_t at) {
       uint32_t value = 0;
       for (size_t i = 0; i < 4; ++i) value = value << 8U | static_cast<uint8_t>(content[at + i]);

@@ -41,7 +41,7 @@ PictureField FieldOf(const scene::Scene& scene, const std::filesystem::path& sce
 
 RenderedPicture RenderPicture(const PictureRequest& request, const PictureField& field, const products::RayCaster& caster,
                               const std::function<void(int64_t rays)>& on_rays) {
-  const PictureRays maker(request, field.cones);
+  const PictureRays picture_rays(request, field.cones);
   const std::vector<size_t> order = PixelsInOrder(request);
   const Eigen::Vector3d axis_enu = request.cam_from_enu.conjugate() * Eigen::Vector3d::UnitZ();
   RenderedPicture picture;
@@ -55,7 +55,7 @@ RenderedPicture RenderPicture(const PictureRequest& request, const PictureField&
     const std::span<const size_t> pixels = std::span(order).subspan(first, count);
     rays.resize(count);
     colors.assign(count, render::RayColor{});
-    maker.Make(pixels, rays);
+    picture_rays.Make(pixels, rays);
     caster(rays, colors);
     const image::Image8 some = products::ColorImage(colors, static_cast<int>(count), 1);
     for (size_t i = 0; i < count; ++i) {

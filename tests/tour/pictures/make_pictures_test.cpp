@@ -30,13 +30,13 @@ TEST(MakePictures, ASecondRunRendersNothing) {
   CountedField counted;
   const TemporaryFolder work;
   const std::vector<PictureRequest> requests = ThreeRequests();
-  const MadePictures first = MakePictures(requests, counted.field, work.path());
+  const PictureFiles first = MakePictures(requests, counted.field, work.path());
   EXPECT_EQ(first.rendered, 3);
   EXPECT_EQ(counted.n_rays, 2 * 64 * 32 + 40 * 30);
   EXPECT_EQ(first.rays, counted.n_rays);
   ASSERT_EQ(first.files.size(), 3U);
   const std::string bytes = base::ReadFile(first.files[1]);
-  const MadePictures second = MakePictures(requests, counted.field, work.path());
+  const PictureFiles second = MakePictures(requests, counted.field, work.path());
   EXPECT_EQ(second.rendered, 0);
   EXPECT_EQ(counted.n_rays, first.rays);
   EXPECT_EQ(second.files, first.files);
@@ -91,15 +91,15 @@ TEST(MakePictures, RendersWhatHasChangedAndRemovesTheRest) {
   CountedField counted;
   const TemporaryFolder work;
   std::vector<PictureRequest> requests = ThreeRequests();
-  const MadePictures before = MakePictures(requests, counted.field, work.path());
+  const PictureFiles before = MakePictures(requests, counted.field, work.path());
   base::WriteFileAtomically(work / "notes.txt", "not ours");
   // As a killed process leaves it.
   base::WriteFileAtomically(work / ("." + before.files[0].filename().string() + ".tmp.123.0"), "half");
   const auto expect_rendered = [&](int64_t rendered, const char* why) {
-    const MadePictures made = MakePictures(requests, counted.field, work.path());
-    EXPECT_EQ(made.rendered, rendered) << why;
+    const PictureFiles result = MakePictures(requests, counted.field, work.path());
+    EXPECT_EQ(result.rendered, rendered) << why;
     std::set<std::string> expected = {"notes.txt"};
-    for (const auto& file : made.files) expected.insert(file.filename().string());
+    for (const auto& file : result.files) expected.insert(file.filename().string());
     EXPECT_EQ(FilesIn(work.path()), expected) << why;
   };
   requests[0].cam_from_enu = Eigen::Quaterniond(0.6, 0.0, 0.8, 0.0);
@@ -122,8 +122,8 @@ TEST(MakePictures, ExposuresAreThoseOfTheRequests) {
   CountedField counted;
   const TemporaryFolder work;
   const std::vector<PictureRequest> requests = {PanoramaAt({0.0, 0.0, 30.0}, 32, "normal"), PanoramaAt({0.0, 0.0, 30.0}, 32, "-1")};
-  const MadePictures made = MakePictures(requests, counted.field, work.path());
-  const image::Image8 normal = ColorsOf(OpenPicture(made.files[0])), darker = ColorsOf(OpenPicture(made.files[1]));
+  const PictureFiles result = MakePictures(requests, counted.field, work.path());
+  const image::Image8 normal = ColorsOf(OpenPicture(result.files[0])), darker = ColorsOf(OpenPicture(result.files[1]));
   // Ground east of the eye is red.
   EXPECT_EQ(normal.At(24, 15)[0], 255);
   EXPECT_EQ(darker.At(24, 15)[0], 128);

@@ -11,7 +11,6 @@
 #include "core/base/json_text.h"
 #include "core/base/order_statistics.h"
 #include "core/gis/geotiff.h"
-#include "core/image/image.h"
 #include "core/survey/geo_fit.h"
 #include "products/place_metadata.h"
 

@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/base/cancel.h"

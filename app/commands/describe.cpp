@@ -10,7 +10,6 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/scene/scene_file.h"
-#include "core/survey/survey.h"
 #include "partition/block.h"
 #include "products/preview_files.h"
 

@@ -1,7 +1,6 @@
 #include "bench/study/picture_sheet.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/base/errors.h"
 #include "core/image/draw_text.h"

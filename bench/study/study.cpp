@@ -9,7 +9,6 @@
 #include "bench/study/thin_survey.h"
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
-#include "coordinator/stages/pipeline.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"

@@ -7,7 +7,6 @@
 #include <set>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "coordinator/ranks/rank_messages.h"
 #include "coordinator/ranks/shared_folder.h"

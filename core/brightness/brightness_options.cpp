@@ -1,7 +1,6 @@
 #include "core/brightness/brightness_options.h"
 
 #include <sstream>
-#include <vector>
 
 #include "core/base/errors.h"
 

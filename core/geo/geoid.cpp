@@ -8,7 +8,6 @@
 #include <string>
 
 #include "core/base/errors.h"
-#include "core/geo/geodetic.h"
 #include "core/geo/proj_handles.h"
 
 namespace skyquilt::geo {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "core/base/output_file.h"
 #include "core/gis/gdal_support.h"

@@ -9,8 +9,6 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "core/survey/control_fit.h"
-#include "core/survey/geo_fit.h"
 #include "core/survey/points_ply.h"
 
 namespace skyquilt::survey {

@@ -6,7 +6,6 @@
 #include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/gis/zone_wkt.h"
-#include "surface/files/file_writer.h"
 
 namespace skyquilt::surface {
 namespace {

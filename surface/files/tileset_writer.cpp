@@ -7,7 +7,6 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "core/base/output_file.h"
 #include "core/geo/ecef.h"
 #include "surface/files/gltf_document.h"
 

@@ -6,7 +6,6 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "products/video_writer.h"
-#include "tour/pictures/render_picture.h"
 #include "tour/ways/film.h"
 
 namespace skyquilt::tour {

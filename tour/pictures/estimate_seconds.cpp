@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "tour/pictures/render_picture.h"
-
 namespace skyquilt::tour {
 namespace {
 

@@ -11,7 +11,6 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "tour/pictures/picture_file.h"
-#include "tour/pictures/render_picture.h"
 
 namespace skyquilt::tour {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/image/image.h"
 
 namespace skyquilt::tour {
 namespace {

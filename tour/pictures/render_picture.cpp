@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <span>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -17,7 +16,6 @@
 #include "viewer/data/describe_buildings.h"
 #include "viewer/data/describe_files.h"
 #include "viewer/data/opening.h"
-#include "viewer/data/survey_place.h"
 
 namespace skyquilt::viewer {
 namespace {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/random.h"
 #include "core/camera/pixel_pitch.h"
 #include "core/survey/training_points.h"
 

@@ -13,7 +13,6 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/system.h"
-#include "core/render/trained_field.h"
 #include "core/scene/field_file.h"
 #include "core/scene/scene_file.h"
 #include "evaluate/metrics/training_curve.h"

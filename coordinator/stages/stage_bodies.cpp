@@ -6,7 +6,6 @@
 #include "coordinator/scheduler/train_all.h"
 #include "coordinator/stages/first_picture.h"
 #include "core/base/amounts.h"
-#include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/thread_pool.h"
 #include "core/scene/scene.h"

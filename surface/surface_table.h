@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "surface/fuse_mesh.h"
 #include "surface/make_surface.h"
 #include "surface/map_frame.h"
 

@@ -9,7 +9,6 @@
 #include "coordinator/scheduler/block_queue.h"
 #include "coordinator/scheduler/coordinate.h"
 #include "core/base/errors.h"
-#include "core/base/file.h"
 #include "core/base/progress.h"
 #include "core/base/random.h"
 #include "core/base/system.h"

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 #include "coordinator/ranks/rank_messages.h"
-#include "coordinator/scheduler/coordinate.h"
 #include "core/base/errors.h"
 
 namespace skyquilt::bench {

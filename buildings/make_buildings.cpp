@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "buildings/candidates/matched_points.h"
+#include "buildings/candidates/candidate_checks.h"
 #include "buildings/fit/fit_parameters.h"
 #include "buildings/fit/fit_shape.h"
 #include "buildings/outline_block.h"

@@ -1,7 +1,5 @@
 #include "evaluate/evaluate_options.h"
 
-#include <filesystem>
-
 #include "core/base/errors.h"
 
 namespace skyquilt::evaluate {

@@ -7,7 +7,6 @@
 #include "core/base/errors.h"
 #include "core/brightness/luminance.h"
 #include "core/brightness/response.h"
-#include "core/checkpoint/archive.h"
 #include "core/render/trained_field.h"
 #include "core/scene/background.h"
 #include "core/scene/field_file.h"

@@ -7,7 +7,7 @@
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "partition/block.h"
 #include "partition/lonlat_polygon.h"
 

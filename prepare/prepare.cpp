@@ -17,7 +17,7 @@
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
 #include "core/survey/colmap_model.h"
-#include "core/survey/height_reference_of.h"
+#include "core/survey/tagged_heights.h"
 #include "prepare/bundle/intrinsics_sigma.h"
 #include "prepare/bundle/resect.h"
 #include "prepare/control/fit/control_report.h"

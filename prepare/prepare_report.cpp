@@ -9,7 +9,7 @@
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "prepare/tables/csv_field.h"
 
 namespace skyquilt::prepare {

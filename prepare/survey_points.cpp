@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/log.h"
-#include "core/base/mix_bits.h"
+#include "core/base/random.h"
 #include "core/survey/training_points.h"
 #include "prepare/georeference/filter_sparse_points.h"
 

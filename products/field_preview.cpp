@@ -21,11 +21,11 @@ constexpr double kShareOfTime = 0.7;  // the rest is for what the trial does not
 // Rays per second, from some rows of a small map.
 double MeasureSpeed(const scene::SceneInfo& info, const RayCaster& caster) {
   const gis::MapGrid grid = PlanPreviewGrid(info, info.gsd_m, kFewestFieldCells);
-  const MapRayGenerator maker(info, grid);
+  const MapRayGenerator generator(info, grid);
   std::vector<render::Ray> rays;
   MapRays row_rays;
   for (int i = 0; i < kTrialRows; ++i) {
-    maker.MakeRow(static_cast<int>((i + 0.5) / kTrialRows * grid.height), &row_rays);
+    generator.MakeRow(static_cast<int>((i + 0.5) / kTrialRows * grid.height), &row_rays);
     rays.insert(rays.end(), row_rays.rays.begin(), row_rays.rays.end());
   }
   std::vector<render::RayColor> colors(rays.size());
@@ -68,13 +68,13 @@ FieldPreview MakeFieldPreview(const scene::SceneInfo& info, const RayCaster& cas
   if (boundary) grid = CropTo(grid, *boundary);
   PreviewMap map{grid, std::vector<uint8_t>(4 * grid.size(), 0)};
   const std::vector<uint8_t> inside = boundary ? boundary->Mask(grid) : std::vector<uint8_t>(map.rgba.size() / 4, 1);
-  const MapRayGenerator maker(info, grid);
+  const MapRayGenerator generator(info, grid);
   base::Progress progress("preview", static_cast<double>(grid.width) * grid.height, "cells");
   MapRays row_rays;
   WaitingRays waiting;
   for (int row = 0; row < grid.height; ++row) {
     base::ThrowIfCancelled();
-    maker.MakeRow(row, &row_rays);
+    generator.MakeRow(row, &row_rays);
     for (size_t i = 0; i < row_rays.rays.size(); ++i) {
       const size_t cell = grid.Index(row_rays.column[i], row);
       if (inside[cell] == 0) continue;

@@ -11,8 +11,7 @@
 #include "core/base/json_text.h"
 #include "core/base/order_statistics.h"
 #include "core/gis/geotiff.h"
-#include "core/image/encode.h"
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "products/place_metadata.h"
 
 namespace skyquilt::products {

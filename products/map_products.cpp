@@ -107,7 +107,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(info, grid, "Orthophoto"));
   if (options.dsm) dsm.emplace(products.dsm = folder / "dsm.tif", DsmSpec(info, heights, grid));
 
-  const MapRayGenerator maker(info, grid);
+  const MapRayGenerator generator(info, grid);
   base::Progress progress(options.ortho ? "orthophoto" : "surface model", static_cast<double>(grid.width) * grid.height, "cells");
   Band band;
   MapRays row_rays;
@@ -120,7 +120,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
     band.rgba.assign(4 * cells, 0);
     band.height.assign(cells, kNoHeight);
     for (int row = 0; row < band.n_rows; ++row) {
-      maker.MakeRow(band.first_row + row, &row_rays);
+      generator.MakeRow(band.first_row + row, &row_rays);
       for (size_t i = 0; i < row_rays.rays.size(); ++i) {
         if (boundary && !boundary->Contains(grid.CellCentre(row_rays.column[i], band.first_row + row))) continue;
         ++products.rays;

@@ -1,7 +1,6 @@
 #include "products/point_preview.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>

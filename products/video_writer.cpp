@@ -2,13 +2,12 @@
 
 #include <cerrno>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/base/cancel.h"
 #include "core/base/child_process.h"
 #include "core/base/errors.h"
-#include "core/base/partial_path.h"
+#include "core/base/output_file.h"
 
 namespace skyquilt::products {
 namespace {

@@ -15,7 +15,6 @@
 #include "surface/fusion/fuse.h"
 #include "surface/map_frame.h"
 #include "surface/mesh/simplify.h"
-#include "surface/surface_box.h"
 #include "surface/tile_store.h"
 
 namespace skyquilt::surface {

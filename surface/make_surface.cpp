@@ -95,9 +95,9 @@ void ClassifyPoints(const HeightRaster& terrain, const MapFrame& frame, double l
   }
 }
 
-class SurfaceMaker {
+class SurfaceBuilder {
  public:
-  SurfaceMaker(const SurfaceInput& input, base::ThreadPool& threads) : input_(input), threads_(threads), frame_(*input.info, input.vertical) {
+  SurfaceBuilder(const SurfaceInput& input, base::ThreadPool& threads) : input_(input), threads_(threads), frame_(*input.info, input.vertical) {
     if (!frame_.heights().Caution().empty()) base::LogWarning("{}", frame_.heights().Caution());
     // The tiles need the geoid at the end: without it, hours of work would be lost then.
     if (input.options.tiles) frame_.heights().In(geo::Vertical::kEllipsoid);
@@ -207,7 +207,7 @@ class SurfaceMaker {
 SurfaceResult MakeSurface(const SurfaceInput& input, base::ThreadPool& threads) {
   SKYQUILT_CHECK(input.info != nullptr && input.survey != nullptr && input.caster, "scene, survey and caster must be set");
   input.options.Check();
-  return SurfaceMaker(input, threads).Make();
+  return SurfaceBuilder(input, threads).Make();
 }
 
 std::vector<TexturedTile> LoadFinestTiles(const fs::path& work_folder) {

@@ -1,7 +1,6 @@
 #include "surface/map_frame.h"
 
 #include <Eigen/Geometry>
-#include <cmath>
 
 namespace skyquilt::surface {
 namespace {

@@ -3,11 +3,9 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"

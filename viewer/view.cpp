@@ -8,7 +8,7 @@
 #include "viewer/assets.h"
 #include "viewer/data/project_data.h"
 #include "viewer/engine/engine.h"
-#include "viewer/server/own_hosts.h"
+#include "viewer/server/host_list.h"
 #include "viewer/server/server.h"
 
 namespace skyquilt::viewer {
@@ -65,7 +65,7 @@ void View(comm::Communicator& comm, const ViewOptions& options) {
   if (options.edit) server_options.rights = {Right::kEdit, Right::kPlay};
   if (!options.listen.empty()) server_options.address = options.listen == "localhost" ? "127.0.0.1" : options.listen;
   if (!IsLoopback(options.listen)) {
-    server_options.extra_hosts = OwnHosts();
+    server_options.extra_hosts = server::OwnHosts();
     base::LogWarning(
         "--listen {}: other machines can reach this viewer, and the connection is not encrypted. Whoever has the link can see the project and change "
         "its measurements{}. Better: keep the default and forward the port, for instance with ssh -t -L 8000:127.0.0.1:8000 host skyquilt view out "

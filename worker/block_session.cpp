@@ -8,7 +8,6 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/scene/field_file.h"
-#include "core/scene/scene_file.h"
 
 namespace skyquilt::worker {
 namespace {

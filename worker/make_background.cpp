@@ -1,7 +1,6 @@
 #include "worker/make_background.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>

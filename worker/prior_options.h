@@ -10,7 +10,7 @@ namespace skyquilt::worker {
 
 struct PriorOptions {
   // Weights relative to the photo loss; 0: off.
-  double planar = 0.0;       // rays of one segment of a photo end on a plane (worker/losses/robust_loss.h)
+  double planar = 0.0;       // rays of one segment of a photo end on a plane (RobustLoss)
   double upright = 0.0;      // and that plane is level or vertical when it nearly is, and vertical ones follow the direction of the buildings there
   double planes = 0.01;      // rays that end near a plane of sparse points (worker/planes/point_planes.h) end on it
   double points = 0.05;      // rays towards sparse points end there (worker/losses/point_depth_loss.h)

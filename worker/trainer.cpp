@@ -8,7 +8,6 @@
 #include "core/brightness/captured_photos.h"
 #include "core/brightness/exposure.h"
 #include "core/brightness/predict_gains.h"
-#include "core/render/march.h"
 #include "worker/block_session.h"
 #include "worker/field_trainer.h"
 #include "worker/make_background.h"

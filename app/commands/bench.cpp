@@ -10,7 +10,6 @@
 #include "bench/schedule_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/system.h"
 
 namespace skyquilt::app {
 namespace {

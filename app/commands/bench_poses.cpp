@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -10,7 +12,6 @@
 #include "bench/poses/poses_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/log.h"
 
 namespace skyquilt::app {
 namespace {

@@ -9,7 +9,6 @@
 #include "app/settings/memory_size.h"
 #include "app/settings/presets.h"
 #include "core/base/errors.h"
-#include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
 #include "viewer/tour_parts.h"

@@ -1,7 +1,6 @@
 #include "app/commands/describe.h"
 
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/commands/describe_number.h"
@@ -11,7 +10,6 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/scene/scene_file.h"
-#include "core/survey/survey.h"
 #include "partition/block.h"
 #include "products/preview_files.h"
 

@@ -3,8 +3,6 @@
 #include "app/commands/command.h"
 #include "coordinator/stages/stage.h"
 #include "core/base/errors.h"
-#include "core/base/log.h"
-#include "core/base/progress.h"
 #include "viewer/assets.h"
 
 namespace skyquilt::app {

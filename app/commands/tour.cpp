@@ -4,7 +4,6 @@
 
 #include "app/commands/command.h"
 #include "app/settings/memory_size.h"
-#include "core/base/errors.h"
 
 namespace skyquilt::app {
 namespace {

@@ -3,8 +3,6 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/command.h"
-#include "core/base/errors.h"
-#include "core/base/log.h"
 
 namespace skyquilt::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "bench/numerics/edge_survey.h"
 #include "bench/numerics/groups.h"
-#include "bench/numerics/quiet_stages.h"
+#include "bench/numerics/hamlet_flight.h"
 #include "core/base/random.h"
 #include "core/brightness/exposure.h"
 #include "core/brightness/tone_curve.h"

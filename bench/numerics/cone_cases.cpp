@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "bench/numerics/groups.h"
 #include "bench/numerics/reference_trainer.h"

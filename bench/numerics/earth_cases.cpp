@@ -9,8 +9,6 @@
 #include "bench/numerics/geodesy.h"
 #include "bench/numerics/groups.h"
 #include "bench/numerics/hamlet_flight.h"
-#include "bench/numerics/quiet_stages.h"
-#include "core/base/file.h"
 #include "core/geo/enu_frame.h"
 #include "core/survey/survey.h"
 

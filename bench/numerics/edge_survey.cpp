@@ -1,7 +1,6 @@
 #include "bench/numerics/edge_survey.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/checkpoint/archive.h"
 #include "core/image/image.h"

@@ -1,5 +1,4 @@
 // Every kernel on every instruction set of this processor, against a scalar version in double.
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

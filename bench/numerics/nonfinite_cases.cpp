@@ -1,11 +1,9 @@
 // NaN and infinity in batches and parameters: they must never spread to other parameters.
 #include <fmt/core.h>
 
-#include <cmath>
-
 #include "bench/numerics/edge_survey.h"
 #include "bench/numerics/groups.h"
-#include "bench/numerics/quiet_stages.h"
+#include "bench/numerics/hamlet_flight.h"
 #include "bench/numerics/synthetic_trainer.h"
 
 namespace skyquilt::bench {

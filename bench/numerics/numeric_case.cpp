@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <chrono>
-#include <cmath>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"

@@ -132,7 +132,6 @@ BenchPage NumericsPage(const NumericsResult& result, const std::string& command)
 }
 
 std::string NumericsJson(const NumericsResult& result, const std::string& command) {
-  const auto number = [](double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr); };
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const GroupResult& group : result.groups) {
     for (const NumericRow& row : group.rows) {
@@ -140,9 +139,9 @@ std::string NumericsJson(const NumericsResult& result, const std::string& comman
                       {"case", row.name},
                       {"expected", row.expected},
                       {"seen", row.seen},
-                      {"worst", number(row.worst)},
+                      {"worst", base::NumberOrNull(row.worst)},
                       {"unit", row.unit},
-                      {"allowed", number(row.limit)},
+                      {"allowed", base::NumberOrNull(row.limit)},
                       {"verdict", row.verdict == Verdict::kPassed   ? "passed"
                                   : row.verdict == Verdict::kFailed ? "failed"
                                                                     : "comparison"},

@@ -8,7 +8,6 @@
 
 #include "bench/numerics/groups.h"
 #include "bench/numerics/hamlet_flight.h"
-#include "bench/numerics/quiet_stages.h"
 #include "core/base/half.h"
 #include "core/base/random.h"
 #include "core/checkpoint/archive.h"

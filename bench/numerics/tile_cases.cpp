@@ -8,7 +8,6 @@
 
 #include "bench/numerics/geodesy.h"
 #include "bench/numerics/groups.h"
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/geo/enu_frame.h"

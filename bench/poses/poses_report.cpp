@@ -1,10 +1,10 @@
-#include <cmath>
+#include <fmt/core.h>
+
 #include <nlohmann/json.hpp>
 
 #include "bench/poses/poses_bench.h"
 #include "core/base/amounts.h"
 #include "core/base/json_text.h"
-#include "core/base/log.h"
 #include "core/base/system.h"
 
 namespace skyquilt::bench {
@@ -109,10 +109,6 @@ std::vector<std::string> Verdicts(const PosesResult& result) {
   return verdicts;
 }
 
-nlohmann::ordered_json Number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 }  // namespace
 
 BenchPage PosesPage(const PosesResult& result, const std::string& command) {
@@ -160,9 +156,9 @@ std::string PosesJson(const PosesResult& result, const std::string& command) {
                     {"registered", row.score.registered},
                     {"right", row.score.right},
                     {"intruders", row.score.intruders},
-                    {"position_m", Number(row.score.position_m)},
-                    {"rotation_deg", Number(row.score.rotation_deg)},
-                    {"focal_error", Number(row.score.focal_error)},
+                    {"position_m", base::NumberOrNull(row.score.position_m)},
+                    {"rotation_deg", base::NumberOrNull(row.score.rotation_deg)},
+                    {"focal_error", base::NumberOrNull(row.score.focal_error)},
                     {"seconds", row.seconds},
                     {"seconds_per_photo", row.SecondsPerPhoto()}});
   }
@@ -174,7 +170,8 @@ std::string PosesJson(const PosesResult& result, const std::string& command) {
                     {"passed", both.Passed()}});
   }
   for (const PosesSlope& slope : result.Slopes())
-    slopes.push_back({{"set", NameOf(slope.set)}, {"way", slope.way}, {"few", slope.few}, {"many", slope.many}, {"ratio", Number(slope.ratio)}});
+    slopes.push_back(
+        {{"set", NameOf(slope.set)}, {"way", slope.way}, {"few", slope.few}, {"many", slope.many}, {"ratio", base::NumberOrNull(slope.ratio)}});
   const nlohmann::ordered_json json = {{"bench", "poses"},
                                        {"place", result.place},
                                        {"seconds", result.seconds},

@@ -5,7 +5,6 @@
 #include "bench/study/buildings_parts.h"
 #include "bench/study/common_pixels.h"
 #include "bench/study/priors_parts.h"
-#include "bench/study/study_tables.h"
 #include "core/base/errors.h"
 
 namespace skyquilt::bench {

@@ -16,7 +16,6 @@
 #include "products/map_area.h"
 #include "products/map_rays.h"
 #include "surface/make_surface.h"
-#include "surface/surface_table.h"
 
 namespace skyquilt::bench {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "core/image/image.h"
 #include "core/metrics/psnr.h"
-#include "evaluate/metrics/metrics.h"
 #include "evaluate/photos/scored_pixels.h"
 
 namespace skyquilt::bench {

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "bench/study/class_crop.h"
+#include "bench/study/picture_sheet.h"
 #include "bench/study/priors_parts.h"
 #include "bench/study/scene_views.h"
 #include "core/base/file.h"

@@ -15,7 +15,6 @@
 #include "core/image/area_mean.h"
 #include "core/image/srgb.h"
 #include "core/metrics/psnr.h"
-#include "evaluate/metrics/metrics.h"
 #include "evaluate/photos/choose_photos.h"
 #include "evaluate/photos/load_held_out_photo.h"
 #include "evaluate/photos/photo_response.h"

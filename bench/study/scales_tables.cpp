@@ -6,7 +6,6 @@
 
 #include "bench/study/scales_parts.h"
 #include "core/page/curve_chart.h"
-#include "evaluate/metrics/metrics.h"
 
 namespace skyquilt::bench {
 namespace {

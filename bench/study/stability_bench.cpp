@@ -11,7 +11,6 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/page/bar_chart.h"
-#include "evaluate/metrics/metrics.h"
 
 namespace skyquilt::bench {
 namespace {

@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -45,14 +44,6 @@ void EachNumber(Result& r, const Each& each) {
   each("evaluate_seconds", r.evaluate_seconds);
 }
 
-Json OrNull(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-double OrNone(const Json& value) {
-  return value.is_null() ? VariantResult::kNone : value.get<double>();
-}
-
 }  // namespace
 
 std::string ResultJson(const VariantResult& result, const std::string& identity) {
@@ -61,7 +52,7 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
   json["label"] = result.label;
   json["identity"] = identity;
   if (!result.failure.empty()) json["failure"] = result.failure;
-  EachNumber(result, [&](const char* key, double value) { json[key] = OrNull(value); });
+  EachNumber(result, [&](const char* key, double value) { json[key] = base::NumberOrNull(value); });
   json["blocks"] = result.blocks;
   json["layout"] = result.layout;
   json["training_photos"] = result.training_photos;
@@ -74,10 +65,10 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"samples", field.samples},
                               {"steps", field.steps},
                               {"seconds", field.seconds},
-                              {"psnr_db", OrNull(field.psnr_db)},
+                              {"psnr_db", base::NumberOrNull(field.psnr_db)},
                               {"falls", field.falls},
-                              {"worst_fall_db", OrNull(field.worst_fall_db)},
-                              {"end_below_best_db", OrNull(field.end_below_best_db)},
+                              {"worst_fall_db", base::NumberOrNull(field.worst_fall_db)},
+                              {"end_below_best_db", base::NumberOrNull(field.end_below_best_db)},
                               {"shows_context", field.shows_context}});
   }
   json["scales"] = Json::array();
@@ -87,9 +78,9 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"averaged", score.averaged},
                               {"photos", score.photos},
                               {"width", score.width},
-                              {"psnr_db", OrNull(score.psnr_db)},
+                              {"psnr_db", base::NumberOrNull(score.psnr_db)},
                               {"render_seconds", score.render_seconds},
-                              {"frame_seconds", OrNull(score.frame_seconds)}});
+                              {"frame_seconds", base::NumberOrNull(score.frame_seconds)}});
   }
   json["scale_pictures"] = result.scale_pictures;
   json["classes"] = ToJson(std::span<const evaluate::metrics::ClassScore>(result.classes));
@@ -112,7 +103,7 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
   json.at("identity").get_to(*identity);
   result.failure = json.value("failure", "");
   // Older programs had fewer scores.
-  EachNumber(result, [&](const char* key, double& value) { value = OrNone(json.value(key, Json(nullptr))); });
+  EachNumber(result, [&](const char* key, double& value) { value = base::NanIfNull(json.value(key, Json(nullptr))); });
   json.at("blocks").get_to(result.blocks);
   json.at("layout").get_to(result.layout);
   json.at("training_photos").get_to(result.training_photos);
@@ -124,10 +115,10 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .log2_table_size = field.at("log2_table_size").get<int>(),
                              .steps = field.value("steps", int64_t{0}),  // absent in results of older programs, as are scales
                              .seconds = field.at("seconds").get<double>(),
-                             .psnr_db = OrNone(field.at("psnr_db")),
+                             .psnr_db = base::NanIfNull(field.at("psnr_db")),
                              .falls = field.value("falls", 0),
-                             .worst_fall_db = OrNone(field.value("worst_fall_db", Json(nullptr))),
-                             .end_below_best_db = OrNone(field.value("end_below_best_db", Json(nullptr))),
+                             .worst_fall_db = base::NanIfNull(field.value("worst_fall_db", Json(nullptr))),
+                             .end_below_best_db = base::NanIfNull(field.value("end_below_best_db", Json(nullptr))),
                              .shows_context = field.value("shows_context", false)});
   }
   for (const Json& score : json.value("scales", Json::array())) {
@@ -136,9 +127,9 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .averaged = score.at("averaged").get<bool>(),
                              .photos = score.at("photos").get<int>(),
                              .width = score.at("width").get<int>(),
-                             .psnr_db = OrNone(score.at("psnr_db")),
+                             .psnr_db = base::NanIfNull(score.at("psnr_db")),
                              .render_seconds = score.at("render_seconds").get<double>(),
-                             .frame_seconds = OrNone(score.at("frame_seconds"))});
+                             .frame_seconds = base::NanIfNull(score.at("frame_seconds"))});
   }
   result.scale_pictures = json.value("scale_pictures", "");
   result.classes = evaluate::metrics::ClassScoresFromJson(json.value("classes", Json()));

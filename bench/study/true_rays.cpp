@@ -1,8 +1,6 @@
 #include "bench/study/true_rays.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>

@@ -1,18 +1,16 @@
 #include "buildings/candidates/find_candidates.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
 
+#include "buildings/candidates/candidate_checks.h"
 #include "buildings/candidates/gather_points.h"
 #include "buildings/candidates/looks_like_bridge.h"
 #include "buildings/candidates/piece_kind.h"
 #include "buildings/candidates/plan_index.h"
-#include "buildings/candidates/plane_sizes.h"
 #include "buildings/candidates/roof_outlines.h"
-#include "buildings/candidates/standing.h"
 #include "buildings/candidates/survey_edge.h"
 #include "buildings/candidates/top_raster.h"
 #include "core/base/cancel.h"

@@ -1,8 +1,6 @@
 // Tells planar pieces of roofs from those of trees, cars and walls.
 #pragma once
 
-#include <span>
-
 #include "buildings/buildings_options.h"
 #include "buildings/planes/grow_planes.h"
 #include "buildings/points/surface_points.h"

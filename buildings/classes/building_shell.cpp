@@ -1,7 +1,6 @@
 #include "buildings/classes/building_shell.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "buildings/geometry/polygon.h"

@@ -1,6 +1,5 @@
 #include "buildings/classes/model_parts.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -12,7 +12,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "surface/files/bytes.h"
+#include "surface/files/file_writer.h"
 #include "surface/files/gltf_document.h"
 
 namespace skyquilt::buildings {

@@ -1,6 +1,4 @@
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <utility>
 
 #include "buildings/files/buildings_format.h"
@@ -13,18 +11,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json NumberJson(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json ListJson(const std::vector<double>& values) {
   Json list = Json::array();
-  for (const double value : values) list.push_back(NumberJson(value));
+  for (const double value : values) list.push_back(base::NumberOrNull(value));
   return list;
 }
 
 Json PointJson(const Eigen::Vector2d& point) {
-  return Json::array({NumberJson(point.x()), NumberJson(point.y())});
+  return Json::array({base::NumberOrNull(point.x()), base::NumberOrNull(point.y())});
 }
 
 Json OutlineJson(const Polygon& polygon) {
@@ -47,15 +41,15 @@ Json ShapeJson(const Shape& shape) {
                      {"v1", part.v1},
                      {"roof", NameOf(part.roof)},
                      {"along_u", part.along_u},
-                     {"eave_z", NumberJson(part.eave_z)},
-                     {"ridge_z", NumberJson(part.ridge_z)},
+                     {"eave_z", base::NumberOrNull(part.eave_z)},
+                     {"ridge_z", base::NumberOrNull(part.ridge_z)},
                      {"joins", part.joins}});
   }
   return {{"origin", PointJson(shape.origin)},
-          {"yaw_rad", NumberJson(shape.yaw_rad)},
+          {"yaw_rad", base::NumberOrNull(shape.yaw_rad)},
           {"u", ListJson(shape.u)},
           {"v", ListJson(shape.v)},
-          {"ground_z", NumberJson(shape.ground_z)},
+          {"ground_z", base::NumberOrNull(shape.ground_z)},
           {"parts", std::move(parts)}};
 }
 
@@ -63,16 +57,16 @@ Json MeasuresJson(const Measures& measures) {
   Json json;
   for (const auto& [name, member] : kMeasureNames) {
     const Measure& measure = measures.*member;
-    json[name] = Json::array({NumberJson(measure.value), NumberJson(measure.sigma)});
+    json[name] = Json::array({base::NumberOrNull(measure.value), base::NumberOrNull(measure.sigma)});
   }
-  json["wall_seen"] = NumberJson(measures.wall_seen);
+  json["wall_seen"] = base::NumberOrNull(measures.wall_seen);
   return json;
 }
 
 Json FacesJson(const Solid& solid) {
   Json vertices = Json::array(), faces = Json::array();
   for (const Eigen::Vector3d& vertex : solid.vertex) {
-    vertices.push_back(Json::array({NumberJson(vertex.x()), NumberJson(vertex.y()), NumberJson(vertex.z())}));
+    vertices.push_back(Json::array({base::NumberOrNull(vertex.x()), base::NumberOrNull(vertex.y()), base::NumberOrNull(vertex.z())}));
   }
   for (const Face& face : solid.face) {
     Json holes = Json::array();
@@ -90,10 +84,10 @@ Json BuildingJson(const Building& building) {
   json["roof"] = NameOf(building.roof);
   json["accepted"] = building.accepted;
   json["note"] = building.note;
-  json["overhang_m"] = NumberJson(building.overhang_m);
+  json["overhang_m"] = base::NumberOrNull(building.overhang_m);
   json["overhang_measured"] = building.overhang_measured;
-  json["share_within"] = NumberJson(building.share_within);
-  json["residual_m"] = NumberJson(building.residual_m);
+  json["share_within"] = base::NumberOrNull(building.share_within);
+  json["residual_m"] = base::NumberOrNull(building.residual_m);
   json["roof_points"] = building.roof_points;
   json["wall_points"] = building.wall_points;
   json["walls_from_points"] = building.walls_from_points;
@@ -117,9 +111,9 @@ void SaveBuildings(const BuildingSet& set, const surface::MapFrame& frame, const
   json["format"] = kBuildingsFormat;
   json["version"] = kBuildingsVersion;
   json["metric"] = set.metric;
-  json["scale"] = NumberJson(set.scale);
+  json["scale"] = base::NumberOrNull(set.scale);
   json["scale_source"] = set.scale_source;
-  json["gsd_m"] = NumberJson(set.gsd_m);
+  json["gsd_m"] = base::NumberOrNull(set.gsd_m);
   json["crs"] = names.CrsName();
   json["vertical"] = names.VerticalName();
   json["buildings"] = Json::array();

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numbers>
-#include <vector>
 
 namespace skyquilt::buildings {
 namespace {

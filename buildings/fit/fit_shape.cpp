@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "buildings/fit/fit_parameters.h"
 #include "buildings/fit/fit_points.h"

@@ -1,6 +1,5 @@
 #include "buildings/fit/ground_level.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 

@@ -1,10 +1,8 @@
 #include "buildings/fit/roof_groups.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <tuple>
 
 #include "buildings/fit/height_mode.h"

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "buildings/fit/fit_points.h"
 #include "buildings/fit/fit_shape.h"
-#include "buildings/fit/wall_pieces.h"
+#include "buildings/fit/wall_strips.h"
 
 namespace skyquilt::buildings {
 namespace {

@@ -3,32 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "buildings/geometry/rings.h"
 #include "buildings/geometry/snapped_segments.h"
+#include "core/base/disjoint_sets.h"
 
 namespace skyquilt::buildings {
-namespace {
-
-class Groups {
- public:
-  explicit Groups(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), size_t{0}); }
-  size_t Of(size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void Join(size_t i, size_t j) {
-    const size_t a = Of(i), b = Of(j);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<size_t> parent_;
-};
-
-}  // namespace
 
 PlanarMap::PlanarMap(std::span<const Segment> segments, double snap_m) {
   SnappedSegments snapped = Snap(segments, snap_m);
@@ -69,7 +50,7 @@ std::vector<std::vector<uint32_t>> PlanarMap::RingsOfFaces() {
 
 void PlanarMap::FindFaces() {
   const std::vector<std::vector<uint32_t>> rings = RingsOfFaces();
-  Groups connected(vertex_.size());
+  base::DisjointSets connected(vertex_.size());
   for (uint32_t h = 0; h < HalfEdges(); h += 2) connected.Join(From(h), To(h));
   struct Around {
     Ring place;
@@ -88,7 +69,7 @@ void PlanarMap::FindFaces() {
     double least = std::numeric_limits<double>::infinity();
     for (size_t s = 0; s < rings.size(); ++s) {
       if (!(around[s].area > 0.0) || around[s].area >= least) continue;
-      if (connected.Of(From(rings[r].front())) == connected.Of(From(rings[s].front()))) continue;
+      if (connected.Root(From(rings[r].front())) == connected.Root(From(rings[s].front()))) continue;
       if (!RingContains(around[s].place, around[r].place.front())) continue;
       least = around[s].area;
       around[r].face = around[s].face;
@@ -149,16 +130,16 @@ int PlanarMap::LabelOf(uint32_t h, std::span<const int> label) const {
 }
 
 std::vector<int> PlanarMap::Components(std::span<const int> label) const {
-  Groups groups(label.size());
+  base::DisjointSets groups(label.size());
   for (uint32_t h = 0; h < HalfEdges(); ++h) {
     const int a = face_[h], b = face_[Twin(h)];
     if (a >= 0 && b >= 0 && label[static_cast<size_t>(a)] == label[static_cast<size_t>(b)])
-      groups.Join(static_cast<size_t>(a), static_cast<size_t>(b));
+      groups.Join(static_cast<uint32_t>(a), static_cast<uint32_t>(b));
   }
   std::vector<int> number(label.size(), -1), component;
   int n = 0;
-  for (size_t f = 0; f < label.size(); ++f) {
-    int& of_group = number[groups.Of(f)];
+  for (uint32_t f = 0; f < label.size(); ++f) {
+    int& of_group = number[groups.Root(f)];
     if (of_group < 0) of_group = n++;
     component.push_back(of_group);
   }

@@ -1,6 +1,5 @@
 // Least rectangles around points.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "buildings/geometry/polygon.h"

@@ -1,7 +1,6 @@
 // Unions, intersections and differences of polygons, and what is measured by them: by labels of the faces between all borders. The floating point
 // versions of Boost.Geometry 1.74 lose whole polygons where turned rectangles have edges in common, as walls do.
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "buildings/geometry/planar_map.h"

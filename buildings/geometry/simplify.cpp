@@ -1,6 +1,5 @@
 // Outlines with fewer points.
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "buildings/geometry/polygon.h"

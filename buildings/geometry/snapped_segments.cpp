@@ -1,7 +1,6 @@
 #include "buildings/geometry/snapped_segments.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 

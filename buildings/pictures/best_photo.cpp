@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "buildings/pictures/building_pictures.h"
 #include "buildings/pictures/model_view.h"

@@ -1,8 +1,6 @@
 #include "buildings/pictures/model_view.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <optional>
 #include <utility>

@@ -12,7 +12,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "core/image/encode.h"
+#include "core/image/image.h"
 
 namespace skyquilt::buildings {
 namespace {

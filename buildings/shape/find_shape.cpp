@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "buildings/fit/roof_choice.h"
 #include "buildings/shape/axis_points.h"
 #include "buildings/shape/cell_rectangles.h"
 #include "buildings/shape/part_score.h"

@@ -1,9 +1,7 @@
 #include "buildings/shape/part_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <optional>
 
 #include "buildings/shape/cell_rectangles.h"
 #include "core/base/cancel.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "buildings/geometry/rings.h"
 #include "buildings/solids/solid_checks.h"
 
 namespace skyquilt::buildings {

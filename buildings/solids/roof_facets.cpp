@@ -1,6 +1,5 @@
 // The upper envelope of the parts' roofs as a planar map.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>

@@ -1,7 +1,5 @@
 #include "buildings/solids/slopes.h"
 
-#include <algorithm>
-
 namespace skyquilt::buildings {
 
 std::vector<Slope> SlopesOf(const Shape& shape, const Part& part) {

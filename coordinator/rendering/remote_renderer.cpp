@@ -1,7 +1,6 @@
 #include "coordinator/rendering/remote_renderer.h"
 
 #include <algorithm>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 

@@ -5,9 +5,7 @@
 
 #include <cstdint>
 #include <deque>
-#include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

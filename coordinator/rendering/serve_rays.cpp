@@ -13,7 +13,6 @@
 #include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
-#include "core/base/system.h"
 #include "core/base/thread_pool.h"
 #include "core/scene/paged_renderer.h"
 #include "core/scene/scene_file.h"

@@ -7,14 +7,12 @@
 #include <set>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "coordinator/ranks/rank_messages.h"
 #include "coordinator/ranks/shared_folder.h"
 #include "coordinator/scheduler/rank_speeds.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
-#include "core/base/log.h"
 
 namespace skyquilt::coordinator {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/training_log.h"

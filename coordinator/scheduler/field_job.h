@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "coordinator/ranks/failure.h"
 #include "worker/trainer.h"

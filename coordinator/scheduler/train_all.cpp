@@ -21,7 +21,6 @@
 #include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
-#include "core/base/system.h"
 
 namespace skyquilt::coordinator {
 namespace {

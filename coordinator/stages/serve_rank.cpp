@@ -3,7 +3,6 @@
 #include "coordinator/poses/rank_tasks.h"
 #include "coordinator/ranks/rank_messages.h"
 #include "coordinator/rendering/serve_rays.h"
-#include "coordinator/scheduler/coordinate.h"
 #include "coordinator/scheduler/train_all.h"
 
 namespace skyquilt::coordinator {

@@ -1,14 +1,11 @@
 #include "coordinator/stages/stage_bodies.h"
 
-#include <set>
-
 #include "coordinator/poses/rank_tasks.h"
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/train_all.h"
 #include "coordinator/stages/first_picture.h"
 #include "core/base/amounts.h"
-#include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/thread_pool.h"
 #include "core/scene/scene.h"

@@ -8,6 +8,7 @@
 #include "core/base/errors.h"
 
 namespace skyquilt::base {
+
 namespace {
 
 constexpr int kRaw = -15;  // window bits: 2^15 bytes, negative for no zlib header
@@ -54,6 +55,11 @@ std::string Inflate(std::string_view packed, size_t size) {
   inflateEnd(&stream);
   if (!complete) throw std::runtime_error("the compressed bytes are damaged");
   return bytes;
+}
+
+uint32_t Crc32(std::string_view bytes) {
+  // crc32_z takes sizes of 64 bits.
+  return static_cast<uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 }  // namespace skyquilt::base

@@ -17,4 +17,9 @@ nlohmann::json TryParseJson(std::string_view text);
 std::string JsonText(const nlohmann::json& value, int indent = -1);
 std::string JsonText(const nlohmann::ordered_json& value, int indent = -1);
 
+// JSON has no NaN and no infinity: null is written instead.
+nlohmann::ordered_json NumberOrNull(double value);
+// The reverse. Throws nlohmann::json::exception for what is neither.
+double NanIfNull(const nlohmann::json& value);
+
 }  // namespace skyquilt::base

@@ -5,7 +5,6 @@
 #include <spdlog/spdlog.h>
 
 #include <memory>
-#include <string>
 
 #include "core/base/errors.h"
 #include "core/base/progress.h"

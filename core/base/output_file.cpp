@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <system_error>
+#include <utility>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 
 namespace skyquilt::base {
+
 namespace {
 
 constexpr size_t kBufferBytes = 1 << 20;
@@ -102,6 +105,22 @@ void OutputFile::Write(std::span<const uint8_t> bytes, uint64_t offset) {
     bytes = bytes.subspan(static_cast<size_t>(n));
     offset += static_cast<uint64_t>(n);
   }
+}
+
+PartialPath::PartialPath(std::filesystem::path target, std::filesystem::path partial) : target_(std::move(target)), partial_(std::move(partial)) {
+  std::error_code error;
+  std::filesystem::remove_all(partial_, error);
+  if (error) ThrowFileError(partial_, "is of an earlier call and cannot be removed", error.value());
+}
+
+PartialPath::~PartialPath() {
+  std::error_code ignored;
+  if (!published_) std::filesystem::remove_all(partial_, ignored);
+}
+
+void PartialPath::Publish() {
+  base::Publish(partial_, target_);
+  published_ = true;
 }
 
 }  // namespace skyquilt::base

@@ -1,5 +1,4 @@
-// A file that is written piece by piece, so that memory does not grow with it, and that is either complete or missing under its final name: it is
-// written as <name>.partial and renamed when it is complete.
+// Files and folders that are either complete or missing under their final name: they are made as <name>.partial and renamed when complete.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +9,7 @@
 
 namespace skyquilt::base {
 
+// A file that is written piece by piece, so that memory does not grow with it.
 class OutputFile {
  public:
   // Replaces an older partial file. Throws InputError, as do all other functions (disk full, no permission).
@@ -44,6 +44,26 @@ class OutputFile {
   bool published_ = false;
   uint64_t written_ = 0;
   std::vector<uint8_t> buffer_;
+};
+
+// A file or a folder that other programs and libraries write; OutputFile and WriteFileAtomically are for files of our own.
+class PartialPath {
+ public:
+  // Removes what a killed process has left. partial: beside the target. Throws InputError when that cannot be removed.
+  PartialPath(std::filesystem::path target, std::filesystem::path partial);
+  // <target>.partial.
+  explicit PartialPath(const std::filesystem::path& target) : PartialPath(target, target.string() + ".partial") {}
+  ~PartialPath();  // removes it unless it was published
+  PartialPath(const PartialPath&) = delete;
+  PartialPath& operator=(const PartialPath&) = delete;
+
+  const std::filesystem::path& path() const { return partial_; }
+  // As base::Publish.
+  void Publish();
+
+ private:
+  std::filesystem::path target_, partial_;
+  bool published_ = false;
 };
 
 }  // namespace skyquilt::base

@@ -1,11 +1,8 @@
 #include "core/brightness/brightness_options.h"
 
-#include <algorithm>
 #include <sstream>
-#include <vector>
 
 #include "core/base/errors.h"
-#include "core/base/text.h"
 
 namespace skyquilt::brightness {
 namespace {

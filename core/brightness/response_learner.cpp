@@ -1,6 +1,5 @@
 #include "core/brightness/response_learner.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,15 +1,12 @@
 #include "core/camera/camera.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <utility>
 
 #include "core/base/errors.h"
 #include "core/camera/distortion.h"
-#include "core/camera/lens.h"
 
 namespace skyquilt::camera {
 namespace {

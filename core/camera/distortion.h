@@ -13,6 +13,8 @@
 #include <array>
 #include <optional>
 
+#include "core/camera/camera.h"
+
 namespace skyquilt::camera {
 
 // The shift that is not radial.
@@ -70,6 +72,21 @@ class Distortion {
   bool is_ideal_;
   std::array<double, 6> k_;  // of the field of view: omega
   Decentering shift_;
+};
+
+// What a camera's pixels need to become rays, looked up once: for loops over many pixels of one camera.
+class Lens {
+ public:
+  explicit Lens(const Camera& camera)
+      : distortion_(DistortionOf(camera)), focal_(camera.FocalX(), camera.FocalY()), principal_point_(camera.PrincipalPoint()) {}
+
+  // As Camera::RayFromImg, with the same bits.
+  Eigen::Vector3d RayFromImg(const Eigen::Vector2d& pixel) const { return distortion_.Undistort((pixel - principal_point_).cwiseQuotient(focal_)); }
+
+ private:
+  Distortion distortion_;
+  Eigen::Vector2d focal_;
+  Eigen::Vector2d principal_point_;
 };
 
 }  // namespace skyquilt::camera

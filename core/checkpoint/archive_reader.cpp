@@ -1,6 +1,5 @@
 #include <hdf5.h>
 
-#include <algorithm>
 #include <map>
 #include <variant>
 

@@ -1,9 +1,7 @@
 #include "core/comm/communicator.h"
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <deque>
 #include <thread>
 
 #include "core/base/cancel.h"
@@ -14,36 +12,6 @@
 namespace skyquilt::comm {
 namespace {
 
-class SingleCommunicator : public Communicator {
- public:
-  int rank() const override { return 0; }
-  int size() const override { return 1; }
-  int local_size() const override { return 1; }
-  void Send(int destination, int tag, const std::string& bytes) override {
-    SKYQUILT_CHECK(destination == 0, "rank " + std::to_string(destination) + " of 1");
-    inbox_.push_back({0, tag, bytes});
-    bytes_sent_ += static_cast<int64_t>(bytes.size());
-  }
-  std::optional<Message> TryReceive() override {
-    if (inbox_.empty()) return std::nullopt;
-    Message message = std::move(inbox_.front());
-    inbox_.pop_front();
-    return message;
-  }
-  std::string Broadcast(const std::string& bytes_on_root) override { return bytes_on_root; }
-  void Barrier() override {}
-  int64_t bytes_sent() const override { return bytes_sent_; }
-  [[noreturn]] void Abort(int exit_status) override {
-    base::FlushLog();
-    std::fflush(nullptr);
-    std::_Exit(exit_status);
-  }
-
- private:
-  std::deque<Message> inbox_;
-  int64_t bytes_sent_ = 0;
-};
-
 bool UnderMpiLauncher() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"}) {
     if (std::getenv(name) != nullptr) return true;
@@ -52,6 +20,25 @@ bool UnderMpiLauncher() {
 }
 
 }  // namespace
+
+void SingleCommunicator::Send(int destination, int tag, const std::string& bytes) {
+  SKYQUILT_CHECK(destination == 0, "rank " + std::to_string(destination) + " of 1");
+  inbox_.push_back({0, tag, bytes});
+  bytes_sent_ += static_cast<int64_t>(bytes.size());
+}
+
+std::optional<Message> SingleCommunicator::TryReceive() {
+  if (inbox_.empty()) return std::nullopt;
+  Message message = std::move(inbox_.front());
+  inbox_.pop_front();
+  return message;
+}
+
+void SingleCommunicator::Abort(int exit_status) {
+  base::FlushLog();
+  std::fflush(nullptr);
+  std::_Exit(exit_status);
+}
 
 Message Communicator::Receive() {
   for (;;) {

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,6 +52,24 @@ class Communicator {
   virtual int64_t bytes_sent() const = 0;
   // Ends all ranks at once with this exit status.
   [[noreturn]] virtual void Abort(int exit_status) = 0;
+};
+
+// Of this process alone.
+class SingleCommunicator : public Communicator {
+ public:
+  int rank() const override { return 0; }
+  int size() const override { return 1; }
+  int local_size() const override { return 1; }
+  void Send(int destination, int tag, const std::string& bytes) override;
+  std::optional<Message> TryReceive() override;
+  std::string Broadcast(const std::string& bytes_on_root) override { return bytes_on_root; }
+  void Barrier() override {}
+  int64_t bytes_sent() const override { return bytes_sent_; }
+  [[noreturn]] void Abort(int exit_status) override;
+
+ private:
+  std::deque<Message> inbox_;
+  int64_t bytes_sent_ = 0;
 };
 
 // An MPI communicator when started by an MPI launcher (OMPI_COMM_WORLD_SIZE, PMI_SIZE or PMIX_RANK in the environment), otherwise one for a single

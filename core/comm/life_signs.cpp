@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 
 #include "core/base/log.h"
 #include "core/comm/communicator.h"

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <list>
-#include <memory>
 #include <mutex>
 #include <set>
 #include <stdexcept>

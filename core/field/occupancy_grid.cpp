@@ -1,6 +1,5 @@
 #include "core/field/occupancy_grid.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace skyquilt::field {

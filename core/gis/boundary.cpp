@@ -1,7 +1,6 @@
 #include "core/gis/boundary.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

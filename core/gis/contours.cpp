@@ -10,7 +10,6 @@
 
 #include "core/base/log.h"
 #include "core/gis/gdal_support.h"
-#include "core/gis/geopackage_file.h"
 
 namespace skyquilt::gis {
 namespace {

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "core/base/partial_path.h"
+#include "core/base/output_file.h"
 #include "core/gis/gdal_support.h"
 
 namespace skyquilt::gis {
@@ -143,15 +142,6 @@ void GeoTiffWriter::Close() {
 
 namespace {
 
-void ForgetNoDataOf(GDALDataset* dataset, image::ImageF* image) {
-  int has_nodata = FALSE;
-  const double nodata = dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);
-  if (!has_nodata) return;
-  for (float& value : image->data) {
-    if (value == static_cast<float>(nodata)) value = std::numeric_limits<float>::quiet_NaN();
-  }
-}
-
 // GDAL's RasterIO has means and medians, but no maximum. Reads row by row. False: see CPLGetLastErrorMsg.
 bool ReadMaximum(GDALDataset* dataset, image::ImageF* image) {
   const int cells = dataset->GetRasterXSize(), rows = dataset->GetRasterYSize(), bands = image->channels;
@@ -166,7 +156,7 @@ bool ReadMaximum(GDALDataset* dataset, image::ImageF* image) {
                           nullptr) != CE_None) {
       return false;
     }
-    ForgetNoDataOf(dataset, &row);
+    internal::ForgetNoData(dataset, &row);
     for (int x = 0; x < cells; ++x) {
       for (int v = first(y, rows, image->height); v <= last(y, rows, image->height); ++v) {
         for (int u = first(x, cells, image->width); u <= last(x, cells, image->width); ++u) {
@@ -210,7 +200,7 @@ ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width, Redu
     throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(),
                            "Give a GeoTIFF that 'skyquilt render' or 'skyquilt surface' wrote, or make it again");
   }
-  ForgetNoDataOf(dataset.get(), &reduced.image);
+  internal::ForgetNoData(dataset.get(), &reduced.image);
   return reduced;
 }
 

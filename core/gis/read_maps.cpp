@@ -89,15 +89,6 @@ struct Axis {
   int Cells() const { return static_cast<int>(std::ceil(to)) - FirstCell(); }
 };
 
-void ForgetNoData(GDALDataset* dataset, image::ImageF* image) {
-  int has_nodata = FALSE;
-  const double nodata = dataset->GetRasterBand(1)->GetNoDataValue(&has_nodata);
-  if (!has_nodata) return;
-  for (float& value : image->data) {
-    if (value == static_cast<float>(nodata)) value = std::numeric_limits<float>::quiet_NaN();
-  }
-}
-
 void AppendLine(const OGRLineString& part, double height_m, bool index, std::vector<ContourLine>* lines) {
   ContourLine line{height_m, index, {}};
   for (int i = 0; i < part.getNumPoints(); ++i) {
@@ -178,7 +169,7 @@ image::ImageF ReadMapPart(const std::filesystem::path& file, const Eigen::Aligne
                         GDT_Float32, bands, nullptr, pixel, pixel * width, sizeof(float), &extra) != CE_None) {
     throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), kMakeAgain);
   }
-  ForgetNoData(dataset.get(), &image);
+  internal::ForgetNoData(dataset.get(), &image);
   return image;
 }
 

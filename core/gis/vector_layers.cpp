@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/gis/geopackage_file.h"
+#include "core/gis/gdal_support.h"
 
 namespace skyquilt::gis {
 namespace {

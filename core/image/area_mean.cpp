@@ -1,7 +1,6 @@
 #include "core/image/area_mean.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/errors.h"
 

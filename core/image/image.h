@@ -56,8 +56,15 @@ void SaveFloatTiff(const ImageF& image, const std::filesystem::path& file);
 
 // All Save functions write atomically and throw base::InputError (disk full, no permission). quality: 0 to 100.
 void SavePng(const Image8& image, const std::filesystem::path& file);  // 1 or 3 channels
-std::vector<uint8_t> EncodeJpeg(const Image8& image, int quality);
 void SaveJpeg(const Image8& image, const std::filesystem::path& file, int quality);
+
+// As file bytes in memory, for those who send images instead of writing files.
+std::vector<uint8_t> EncodeJpeg(const Image8& image, int quality);
+// The fastest compression that still halves pictures: one filter and runs of equal bytes.
+constexpr int kFastPng = 0;
+// Grey, RGB or RGBA (alpha not premultiplied). level: kFastPng, or 1 to 9 (smallest and slowest). Throws std::logic_error for an empty image or
+// another number of channels.
+std::string EncodePng(const Image8& image, int level);
 
 // Reduces by averaging areas (of sRGB values, as other image programs do); enlarges bilinearly.
 Image8 Resize(const Image8& image, int width, int height);

@@ -1,8 +1,12 @@
 #include <algorithm>
 #include <fstream>
+#include <iostream>
+#include <mutex>
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <span>
+#include <streambuf>
 #include <string_view>
 
 #include "core/base/errors.h"
@@ -10,7 +14,6 @@
 #include "core/image/image.h"
 #include "core/image/jpeg_structure.h"
 #include "core/image/pixel_format.h"
-#include "core/image/quiet_decoder.h"
 
 namespace skyquilt::image {
 namespace {
@@ -23,15 +26,50 @@ std::span<const uint8_t> AsBytes(std::string_view content) {
   return {reinterpret_cast<const uint8_t*>(content.data()), content.size()};
 }
 
-bool StartsWith(std::string_view content, std::string_view magic) {
-  return content.substr(0, magic.size()) == magic;
-}
-
 bool LooksLikeImage(std::string_view content) {
   using std::string_view_literals::operator""sv;
-  return StartsWith(content, "\xFF\xD8\xFF"sv) || StartsWith(content, "\x89PNG"sv) || StartsWith(content, "II*\0"sv) ||
-         StartsWith(content, "MM\0*"sv);
+  return content.starts_with("\xFF\xD8\xFF"sv) || content.starts_with("\x89PNG"sv) || content.starts_with("II*\0"sv) ||
+         content.starts_with("MM\0*"sv);
 }
+
+// Takes everything, so that the stream never fails: its state is shared by threads.
+class Nowhere : public std::streambuf {
+ protected:
+  int overflow(int c) override { return c == traits_type::eof() ? 0 : c; }
+  std::streamsize xsputn(const char* /*text*/, std::streamsize n) override { return n; }
+};
+
+struct Silence {
+  std::mutex mutex;
+  int users = 0;
+  Nowhere nowhere;
+  std::streambuf* kept = nullptr;
+};
+
+Silence& TheSilence() {
+  static Silence silence;
+  return silence;
+}
+
+// While one exists, std::cerr is silent: OpenCV prints there what it throws (and catches itself), several lines per damaged photo, which the errors
+// of our loaders say in one. Any number may exist, in any threads. The program's own log does not go through std::cerr.
+class QuietDecoder {
+ public:
+  QuietDecoder() {
+    Silence& silence = TheSilence();
+    const std::lock_guard lock(silence.mutex);
+    if (silence.users++ > 0) return;
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    silence.kept = std::cerr.rdbuf(&silence.nowhere);
+  }
+  ~QuietDecoder() {
+    Silence& silence = TheSilence();
+    const std::lock_guard lock(silence.mutex);
+    if (--silence.users == 0) std::cerr.rdbuf(silence.kept);
+  }
+  QuietDecoder(const QuietDecoder&) = delete;
+  QuietDecoder& operator=(const QuietDecoder&) = delete;
+};
 
 // Decodes without conversion: bit depth and channels as in the file, BGR(A) order.
 cv::Mat Decode(std::string_view content, const std::filesystem::path& file, int mode = cv::IMREAD_UNCHANGED) {
@@ -128,14 +166,14 @@ void ReadImageSize(const std::filesystem::path& file, int* width, int* height) {
     return;
   }
   std::string content = ReadStart(file);
-  if (ParseJpeg(AsBytes(content), true).width == 0 && !StartsWith(content, "\x89PNG")) content = base::ReadFile(file);
+  if (ParseJpeg(AsBytes(content), true).width == 0 && !content.starts_with("\x89PNG")) content = base::ReadFile(file);
   *width = 0;
   *height = 0;
   const JpegStructure jpeg = ParseJpeg(AsBytes(content), true);
   if (jpeg.is_jpeg) {
     *width = jpeg.width;
     *height = jpeg.height;
-  } else if (StartsWith(content, "\x89PNG\r\n\x1A\n") && content.size() >= 24 && content.substr(12, 4) == "IHDR") {
+  } else if (content.starts_with("\x89PNG\r\n\x1A\n") && content.size() >= 24 && content.substr(12, 4) == "IHDR") {
     const auto big_endian = [&](size_t at) {
       uint32_t value = 0;
       for (size_t i = 0; i < 4; ++i) value = value << 8U | static_cast<uint8_t>(content[at + i]);

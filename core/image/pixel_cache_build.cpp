@@ -12,7 +12,6 @@
 
 #include "core/base/cancel.h"
 #include "core/base/file.h"
-#include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/image/image.h"
 #include "core/image/pixel_cache_file.h"

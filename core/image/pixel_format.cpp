@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <span>
 #include <string_view>
 #include <vector>
 

@@ -58,4 +58,22 @@ void SaveJpeg(const Image8& image, const std::filesystem::path& file, int qualit
   Write(EncodeJpeg(image, quality), file);
 }
 
+std::string EncodePng(const Image8& image, int level) {
+  const cv::Mat pixels = Wrap(image, CV_8U);
+  SKYQUILT_CHECK(image.channels == 1 || image.channels == 3 || image.channels == 4,
+                 "PNG has grey, RGB or RGBA pixels, not " + std::to_string(image.channels) + " channels");
+  SKYQUILT_CHECK(level >= kFastPng && level <= 9, "PNG has no compression level " + std::to_string(level));
+  cv::Mat ordered;
+  if (image.channels == 1) {
+    ordered = pixels;
+  } else {
+    cv::cvtColor(pixels, ordered, image.channels == 3 ? cv::COLOR_RGB2BGR : cv::COLOR_RGBA2BGRA);
+  }
+  // Without a level, OpenCV takes the fastest filter and strategy.
+  std::vector<int> parameters;
+  if (level != kFastPng) parameters = {cv::IMWRITE_PNG_COMPRESSION, level};
+  const std::vector<uint8_t> bytes = Encode(".png", ordered, parameters);
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace skyquilt::image

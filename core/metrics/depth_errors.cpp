@@ -1,6 +1,5 @@
 #include "core/metrics/depth_errors.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

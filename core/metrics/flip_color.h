@@ -1,7 +1,6 @@
 // Colour spaces of FLIP. XYZ is relative to the white point here: white is (1, 1, 1).
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

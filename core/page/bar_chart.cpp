@@ -7,7 +7,7 @@
 
 #include "core/page/figure.h"
 #include "core/page/html.h"
-#include "core/page/ticks.h"
+#include "core/page/plot_frame.h"
 
 namespace skyquilt::page {
 

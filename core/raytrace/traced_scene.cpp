@@ -3,7 +3,6 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
-#include <limits>
 #include <string>
 
 #include "core/base/errors.h"

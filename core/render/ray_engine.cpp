@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/image/srgb.h"
-#include "core/render/composite.h"
 #include "core/render/density_normal.h"
 #include "core/render/footprint.h"
 #include "core/render/sample_marcher.h"

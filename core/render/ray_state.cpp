@@ -1,7 +1,6 @@
 #include "core/render/ray_state.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace skyquilt::render {
 namespace {

@@ -1,7 +1,6 @@
 #include "core/render/sample_marcher.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/base/errors.h"

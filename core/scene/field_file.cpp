@@ -1,6 +1,5 @@
 #include "core/scene/field_file.h"
 
-#include <cmath>
 #include <functional>
 #include <numeric>
 #include <stdexcept>

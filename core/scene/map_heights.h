@@ -1,6 +1,6 @@
 // The heights of maps and of all other files with coordinates: how they follow from those of a scene's frame, and what they are called.
 // A scene's frame has the survey's heights (SceneInfo::height_reference), which computations take for ellipsoidal. Between the ellipsoid and EGM96
-// the undulation of the geoid at each place is added or subtracted, see core/geo/geoid_patch.h. Heights of unknown reference are taken for
+// the undulation of the geoid at each place is added or subtracted, see geo::GeoidPatch. Heights of unknown reference are taken for
 // ellipsoidal when a reference is asked for, and every file says so.
 #pragma once
 
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/geo/geodetic.h"
-#include "core/geo/geoid_patch.h"
+#include "core/geo/geoid.h"
 #include "core/geo/height_reference.h"
 #include "core/scene/scene.h"
 

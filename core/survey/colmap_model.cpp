@@ -1,7 +1,6 @@
 #include "core/survey/colmap_model.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "core/base/errors.h"

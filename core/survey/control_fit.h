@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -60,5 +61,12 @@ struct ControlFit {
   bool adjusted = false;                // by bundle adjustment; false: by a similarity alone
   std::vector<ControlPointFit> points;  // in file order
 };
+
+// The control points' part of survey.json. Numbers that are NaN are stored as null.
+nlohmann::ordered_json ToJson(const ControlFit& fit);
+
+// Throws nlohmann::json::exception for missing keys and wrong types, std::invalid_argument for vectors of a wrong length, an unknown use, two points
+// of one label, and a horizontal place or a marked pixel that is unknown.
+ControlFit ControlFitFromJson(const nlohmann::json& value);
 
 }  // namespace skyquilt::survey

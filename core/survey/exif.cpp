@@ -8,7 +8,6 @@
 #include <exiv2/exiv2.hpp>
 #include <limits>
 #include <string_view>
-#include <vector>
 
 #include "core/base/errors.h"
 #include "core/survey/dji_maker_note.h"

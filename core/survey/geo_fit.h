@@ -3,7 +3,7 @@
 #pragma once
 
 #include <limits>
-#include <optional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -61,5 +61,17 @@ struct Problem {
   bool about_place = false;  // concerns the place on Earth: an error when prepare.require_georeference is set
   bool operator==(const Problem&) const = default;
 };
+
+// The geo-reference part of survey.json. Numbers that are NaN are stored as null.
+nlohmann::ordered_json ToJson(const geo::PlaceAccuracy& accuracy);
+nlohmann::ordered_json ToJson(const GeoFit& fit);
+nlohmann::ordered_json ToJson(const FlightChecks& checks);
+nlohmann::ordered_json ToJson(const Problem& problem);
+
+// Throw nlohmann::json::exception for missing keys and wrong types.
+geo::PlaceAccuracy PlaceAccuracyFromJson(const nlohmann::json& value);
+GeoFit GeoFitFromJson(const nlohmann::json& value);
+FlightChecks FlightChecksFromJson(const nlohmann::json& value);
+Problem ProblemFromJson(const nlohmann::json& value);
 
 }  // namespace skyquilt::survey

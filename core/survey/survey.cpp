@@ -9,13 +9,12 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "core/survey/control_fit_json.h"
-#include "core/survey/geo_fit_json.h"
 #include "core/survey/points_ply.h"
 
 namespace skyquilt::survey {
 namespace {
 
+using base::NanIfNull;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
@@ -25,7 +24,7 @@ constexpr const char *kGivenPoses = "given", *kResectedPoses = "resected";  // o
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 ordered_json NumberOrNull(const std::optional<double>& value) {
-  return survey::NumberOrNull(value.value_or(kNan));
+  return base::NumberOrNull(value.value_or(kNan));
 }
 std::optional<double> OptionalNumber(const json& value) {
   return value.is_null() ? std::nullopt : std::optional<double>(value.get<double>());

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "core/survey/geo_fit_json.h"
+#include "core/base/json_text.h"
 #include "evaluate/json_members.h"
 
 namespace skyquilt::evaluate::buildings {
@@ -43,7 +43,7 @@ constexpr std::array<std::pair<const char*, BuildingOutcome::Fate>, 3> kFates = 
 
 // Into an object that may have other keys already.
 void PutDetection(const BuildingDetection& score, BuildingsJson* json) {
-  for (const auto& [key, member] : kDetectionShares) (*json)[key] = survey::NumberOrNull(score.*member);
+  for (const auto& [key, member] : kDetectionShares) (*json)[key] = base::NumberOrNull(score.*member);
   for (const auto& [key, member] : kDetectionCounts) (*json)[key] = score.*member;
 }
 
@@ -56,11 +56,11 @@ BuildingDetection TakeDetection(const std::string& size, const BuildingsJson& js
 }
 
 void PutRoof(const BuildingRoofScores& score, BuildingsJson* json) {
-  (*json)["roof_kind_right"] = survey::NumberOrNull(score.roof_right);
+  (*json)["roof_kind_right"] = base::NumberOrNull(score.roof_right);
   BuildingsJson& errors = (*json)["errors"] = BuildingsJson::object();
   for (const BuildingErrors& one : score.errors) {
     BuildingsJson& figures = errors[one.measure] = {{"n", one.n}, {"with_sigma", one.with_sigma}};
-    for (const auto& [key, member] : kErrorNumbers) figures[key] = survey::NumberOrNull(one.*member);
+    for (const auto& [key, member] : kErrorNumbers) figures[key] = base::NumberOrNull(one.*member);
   }
 }
 
@@ -90,11 +90,11 @@ BuildingsJson OutcomeJson(const BuildingOutcome& outcome) {
   if (outcome.found_id >= 0) json["found_id"] = outcome.found_id;
   if (!outcome.roof.empty()) json["roof"] = outcome.roof;
   if (!outcome.roof_found.empty()) json["roof_found"] = outcome.roof_found;
-  json["area_m2"] = survey::NumberOrNull(outcome.area_m2);
+  json["area_m2"] = base::NumberOrNull(outcome.area_m2);
   if (outcome.fate != BuildingOutcome::Fate::kMatched) return json;
-  json["overlap"] = survey::NumberOrNull(outcome.overlap);
+  json["overlap"] = base::NumberOrNull(outcome.overlap);
   BuildingsJson& errors = json["errors"] = BuildingsJson::object();
-  for (const BuildingOutcome::Error& one : outcome.errors) errors[one.measure] = {survey::NumberOrNull(one.error), survey::NumberOrNull(one.sigma)};
+  for (const BuildingOutcome::Error& one : outcome.errors) errors[one.measure] = {base::NumberOrNull(one.error), base::NumberOrNull(one.sigma)};
   return json;
 }
 
@@ -135,8 +135,8 @@ void PutTruth(const BuildingTruthScores& truth, BuildingsJson* json) {
   (*json)["outlines_not_counted"] = truth.outlines_not_counted;
   (*json)["found_not_counted"] = truth.found_not_counted;
   (*json)["corners"] = truth.corners;
-  (*json)["corners_found"] = survey::NumberOrNull(truth.corners_found);
-  (*json)["corner_rmse_m"] = survey::NumberOrNull(truth.corner_rmse_m);
+  (*json)["corners_found"] = base::NumberOrNull(truth.corners_found);
+  (*json)["corner_rmse_m"] = base::NumberOrNull(truth.corner_rmse_m);
   (*json)["by_size"] = std::move(sizes);
   (*json)["by_roof"] = std::move(roofs);
   BuildingsJson& each = (*json)["each"] = BuildingsJson::array();
@@ -173,9 +173,9 @@ BuildingsJson ToJson(const BuildingScores& scores) {
   BuildingsJson json;
   for (const auto& [key, member] : kBuildingCounts) json[key] = scores.*member;
   json["metric"] = scores.metric;
-  json["gsd_m"] = survey::NumberOrNull(scores.gsd_m);
-  json["footprint_m2"] = survey::NumberOrNull(scores.footprint_m2);
-  json["volume_m3"] = survey::NumberOrNull(scores.volume_m3);
+  json["gsd_m"] = base::NumberOrNull(scores.gsd_m);
+  json["footprint_m2"] = base::NumberOrNull(scores.footprint_m2);
+  json["volume_m3"] = base::NumberOrNull(scores.volume_m3);
   if (scores.truth) PutTruth(*scores.truth, &json);
   return json;
 }

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/thread_pool.h"
 #include "evaluate/buildings/buildings_pictures.h"
 #include "evaluate/buildings/buildings_scorer.h"
 #include "evaluate/evaluate_input.h"

@@ -1,7 +1,6 @@
 #include "evaluate/buildings/buildings_scorer.h"
 
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "buildings/files/building_files.h"

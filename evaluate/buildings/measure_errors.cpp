@@ -1,6 +1,5 @@
 #include "evaluate/buildings/measure_errors.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,5 @@
 #include "evaluate/buildings/true_buildings.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>

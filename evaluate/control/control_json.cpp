@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/survey/geo_fit_json.h"
+#include "core/base/json_text.h"
 #include "evaluate/control/control_summary.h"
 
 namespace skyquilt::evaluate::control {
@@ -11,7 +11,7 @@ namespace skyquilt::evaluate::control {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using survey::NumberOrNull;
+using base::NumberOrNull;
 
 Json Numbers(const Eigen::Vector3d& v) {
   return {NumberOrNull(v.x()), NumberOrNull(v.y()), NumberOrNull(v.z())};

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/survey/geo_fit_json.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::evaluate::metrics {
 namespace {
@@ -25,7 +25,7 @@ nlohmann::ordered_json ToJson(std::span<const ClassScore> scores) {
   nlohmann::ordered_json classes = nlohmann::ordered_json::object();
   for (const ClassScore& score : scores) {
     nlohmann::ordered_json& one = classes[score.name] = {{"pixels", score.pixels}, {"missing_pixels", score.missing_pixels}};
-    for (const auto& [key, member] : kClassErrors) one[key] = survey::NumberOrNull(score.*member);
+    for (const auto& [key, member] : kClassErrors) one[key] = base::NumberOrNull(score.*member);
   }
   return classes;
 }

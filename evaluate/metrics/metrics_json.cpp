@@ -2,7 +2,7 @@
 #include <span>
 
 #include "core/base/json_text.h"
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "evaluate/buildings/buildings_json.h"
 #include "evaluate/control/control_json.h"
 #include "evaluate/metrics/class_json.h"
@@ -14,7 +14,7 @@ namespace skyquilt::evaluate::metrics {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using survey::NumberOrNull;
+using base::NumberOrNull;
 
 Json BytesOrNull(int64_t bytes) {
   return bytes > 0 ? Json(bytes) : Json(nullptr);

@@ -4,7 +4,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "evaluate/buildings/buildings_json.h"
 #include "evaluate/metrics/class_json.h"
 #include "evaluate/metrics/metrics_keys.h"

@@ -150,20 +150,21 @@ BrightnessReport CollectBrightness(const scene::SceneInfo& info, const survey::S
 
 std::string BrightnessJson(const BrightnessReport& report) {
   using Json = nlohmann::ordered_json;
-  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
   Json json;
   json["about"] =
       "light recorded by a photo relative to the survey's reference exposure, in stops: exif_stops + learned_stops (red, green, blue). For held-out "
       "photos learned_stops are predicted from the photos before and after. vignetting: per camera, factor on light at 0, 0.1 ... 1 of the distance "
       "from the principal point to the farthest corner";
-  json["trust_in_tags"] = number(report.trust_in_tags);
-  json["spread_before_stops"] = number(report.spread_before_stops);
-  json["spread_after_stops"] = number(report.spread_after_stops);
+  json["trust_in_tags"] = base::NumberOrNull(report.trust_in_tags);
+  json["spread_before_stops"] = base::NumberOrNull(report.spread_before_stops);
+  json["spread_after_stops"] = base::NumberOrNull(report.spread_after_stops);
   json["vignetting"] = report.vignetting;
   json["photos"] = Json::array();
   for (const BrightnessPhoto& photo : report.photos) {
-    json["photos"].push_back(
-        {{"name", photo.name}, {"held_out", photo.held_out}, {"exif_stops", number(photo.exif_stops)}, {"learned_stops", photo.learned_stops}});
+    json["photos"].push_back({{"name", photo.name},
+                              {"held_out", photo.held_out},
+                              {"exif_stops", base::NumberOrNull(photo.exif_stops)},
+                              {"learned_stops", photo.learned_stops}});
   }
   return base::JsonText(json, 1) + "\n";
 }

@@ -1,7 +1,5 @@
 #include <fmt/core.h>
 
-#include <cmath>
-
 #include "evaluate/page/building_numbers.h"
 #include "evaluate/page/buildings_section.h"
 #include "evaluate/page/page_parts.h"

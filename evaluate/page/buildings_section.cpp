@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-
 #include "evaluate/page/building_numbers.h"
 #include "evaluate/page/page_parts.h"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/page/figure.h"
-#include "evaluate/control/control_summary.h"
 #include "evaluate/control/tag_positions.h"
 #include "evaluate/page/control_section.h"
 #include "evaluate/page/drawn_map.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "evaluate/control/control_summary.h"
 #include "evaluate/page/page_parts.h"

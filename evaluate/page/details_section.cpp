@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "core/base/progress.h"
 #include "evaluate/page/page_parts.h"
 #include "evaluate/page/sections.h"
 

@@ -1,4 +1,3 @@
-#include <fmt/core.h>
 
 #include "core/page/curve_chart.h"
 #include "evaluate/page/geo_section.h"

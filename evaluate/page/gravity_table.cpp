@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/page/figure.h"
-#include "core/page/ticks.h"
+#include "core/page/plot_frame.h"
 #include "evaluate/page/geo_section.h"
 #include "evaluate/page/page_parts.h"
 

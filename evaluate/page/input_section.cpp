@@ -1,4 +1,3 @@
-#include <fmt/core.h>
 
 #include "core/base/text.h"
 #include "evaluate/page/page_parts.h"

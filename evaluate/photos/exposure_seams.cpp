@@ -1,6 +1,5 @@
 #include "evaluate/photos/exposure_seams.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>

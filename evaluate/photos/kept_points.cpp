@@ -4,12 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <utility>
 
 #include "core/base/errors.h"
-#include "core/base/mix_bits.h"
 #include "core/base/order_statistics.h"
+#include "core/base/random.h"
 #include "core/camera/pixel_pitch.h"
 #include "evaluate/photos/choose_photos.h"
 #include "evaluate/photos/pixel_groups.h"

@@ -1,7 +1,6 @@
 #include "evaluate/surface/mesh_picture.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/base/cancel.h"

@@ -1,7 +1,6 @@
 #include "evaluate/surface/photo_errors.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/errors.h"
 #include "evaluate/photos/pixel_groups.h"

@@ -1,14 +1,13 @@
 #include "evaluate/surface/surface_json.h"
 
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
-#include "core/survey/geo_fit_json.h"
 #include "evaluate/json_members.h"
 
 namespace skyquilt::evaluate::surface {
@@ -45,15 +44,15 @@ constexpr std::array<std::pair<const char*, std::string SurfaceFile::*>, 6> kFil
 void PutAgreement(const SurfaceAgreement& agreement, OrderedJson* json) {
   (*json)["mesh_samples"] = agreement.mesh_samples;
   (*json)["true_samples"] = agreement.true_samples;
-  (*json)["accuracy_median_m"] = survey::NumberOrNull(agreement.accuracy_median_m);
-  (*json)["completeness_median_m"] = survey::NumberOrNull(agreement.completeness_median_m);
+  (*json)["accuracy_median_m"] = base::NumberOrNull(agreement.accuracy_median_m);
+  (*json)["completeness_median_m"] = base::NumberOrNull(agreement.completeness_median_m);
   OrderedJson& list = (*json)["f_scores"] = OrderedJson::array();
   for (const SurfaceFScore& score : agreement.f_scores) {
     list.push_back({{"tau", score.tau},
                     {"tau_m", score.tau_m},
-                    {"precision", survey::NumberOrNull(score.precision)},
-                    {"recall", survey::NumberOrNull(score.recall)},
-                    {"f", survey::NumberOrNull(score.f)}});
+                    {"precision", base::NumberOrNull(score.precision)},
+                    {"recall", base::NumberOrNull(score.recall)},
+                    {"f", base::NumberOrNull(score.f)}});
   }
 }
 
@@ -78,7 +77,7 @@ SurfaceAgreement TakeAgreement(const OrderedJson& json) {
 
 void PutRecord(const SurfaceRecord& record, OrderedJson* json) {
   for (const auto& [key, member] : kRecordCounts) (*json)[key] = record.*member < 0 ? OrderedJson(nullptr) : OrderedJson(record.*member);
-  for (const auto& [key, member] : kRecordNumbers) (*json)[key] = survey::NumberOrNull(record.*member);
+  for (const auto& [key, member] : kRecordNumbers) (*json)[key] = base::NumberOrNull(record.*member);
   OrderedJson& list = (*json)["files"] = OrderedJson::array();
   for (const SurfaceFile& file : record.files) {
     OrderedJson one;
@@ -106,7 +105,7 @@ SurfaceRecord TakeRecord(const OrderedJson& json) {
 
 OrderedJson ToJson(const SurfaceScores& scores) {
   OrderedJson json;
-  for (const auto& [key, member] : kSurfaceNumbers) json[key] = survey::NumberOrNull(scores.*member);
+  for (const auto& [key, member] : kSurfaceNumbers) json[key] = base::NumberOrNull(scores.*member);
   json["pixels"] = scores.pixels;
   json["deck_samples"] = scores.deck_samples;
   PutAgreement(scores.agreement, &json);
@@ -114,8 +113,8 @@ OrderedJson ToJson(const SurfaceScores& scores) {
   for (const SurfaceClassScore& score : scores.classes) {
     OrderedJson& one = classes[score.name] = {{"pixels", score.pixels},
                                               {"missing_pixels", score.missing_pixels},
-                                              {"psnr", survey::NumberOrNull(score.psnr_db)},
-                                              {"psnr_field", survey::NumberOrNull(score.psnr_field_db)}};
+                                              {"psnr", base::NumberOrNull(score.psnr_db)},
+                                              {"psnr_field", base::NumberOrNull(score.psnr_field_db)}};
     PutAgreement(score.agreement, &one);
   }
   PutRecord(scores.record, &json);

@@ -1,7 +1,6 @@
 // Scores the surface of a scene: photo by photo beside the field, then in space.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "core/base/thread_pool.h"

@@ -1,7 +1,6 @@
 #include "prepare/input/file_names.h"
 
 #include <algorithm>
-#include <array>
 #include <initializer_list>
 #include <set>
 #include <string_view>

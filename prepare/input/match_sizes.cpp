@@ -1,6 +1,5 @@
 #include "prepare/input/match_sizes.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>

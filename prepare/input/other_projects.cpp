@@ -1,8 +1,5 @@
 #include "prepare/input/other_projects.h"
 
-#include <algorithm>
-#include <array>
-
 namespace skyquilt::prepare::input {
 namespace {
 

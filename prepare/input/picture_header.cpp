@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <climits>
-#include <optional>
 
 #include "core/base/errors.h"
 #include "core/base/memory_map.h"

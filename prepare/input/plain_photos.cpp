@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <span>
 #include <sstream>
 #include <utility>
@@ -16,7 +15,6 @@
 #include "core/base/progress.h"
 #include "core/base/text.h"
 #include "core/gis/photo_bands.h"
-#include "core/image/encode.h"
 #include "core/image/image.h"
 #include "core/image/pixel_format.h"
 #include "prepare/input/band_choice.h"

@@ -1,6 +1,5 @@
 #include "prepare/input/shots.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>

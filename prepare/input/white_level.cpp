@@ -1,11 +1,12 @@
 #include "prepare/input/white_level.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/base/errors.h"
-#include "core/base/log.h"
 
 namespace skyquilt::prepare::input {
 namespace {

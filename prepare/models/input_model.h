@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "core/base/json_document.h"
 #include "core/base/log.h"
 #include "core/geo/crs.h"

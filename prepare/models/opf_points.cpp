@@ -4,7 +4,6 @@
 #include <map>
 
 #include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_document.h"
 

@@ -5,7 +5,6 @@
 #include <deque>
 
 #include "core/base/child_process.h"
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "core/base/cancel.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"

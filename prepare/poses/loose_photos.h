@@ -2,7 +2,6 @@
 // spread over many photos of which each has next to nothing in common with them.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>

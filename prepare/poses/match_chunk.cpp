@@ -1,11 +1,10 @@
 #include "prepare/poses/match_chunk.h"
 
-#include <cstring>
 #include <string_view>
 #include <utility>
 
 #include "core/base/cancel.h"
-#include "core/base/crc32.h"
+#include "core/base/deflate.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 

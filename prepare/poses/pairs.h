@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/geo/transform.h"
 #include "prepare/poses/photo_places.h"
 #include "prepare/poses/pose_options.h"
 
@@ -46,5 +47,10 @@ std::vector<double> PlaceCosts(const std::vector<std::optional<PhotoPlace>>& pla
 void SortPairs(PhotoPairs& pairs);
 // In either order; the numbers must differ.
 PhotoPair MakePair(uint32_t a, uint32_t b);
+
+// Chosen by poses that are known already: all pairs of a small survey. Otherwise each photo with its `neighbors` nearest by position and direction,
+// and links between groups. cam_from_world: of the photos, any scale and direction of the world. Directions count as much as positions that differ by
+// as much as the scene is likely to be away, judged by the distances between photos. Throws base::Interrupted.
+PhotoPairs PairsByPose(const std::vector<geo::Rigid3d>& cam_from_world, const PairRules& rules);
 
 }  // namespace skyquilt::prepare::poses

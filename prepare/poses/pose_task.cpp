@@ -1,5 +1,6 @@
 #include "prepare/poses/pose_task.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/log.h"
 #include "core/base/system.h"
 #include "core/survey/colmap_merge.h"
 #include "prepare/poses/match_chunk.h"

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "core/base/cancel.h"
-#include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/base/random.h"
 #include "core/kernel/descriptors.h"

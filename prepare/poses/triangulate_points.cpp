@@ -9,7 +9,7 @@
 #include "core/survey/colmap_database.h"
 #include "prepare/poses/extract_features.h"
 #include "prepare/poses/fill_database.h"
-#include "prepare/poses/pose_pairs.h"
+#include "prepare/poses/pairs.h"
 
 namespace skyquilt::prepare::poses {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/json_text.h"
-#include "surface/files/bytes.h"
+#include "surface/files/file_writer.h"
 
 namespace skyquilt::surface {
 namespace {

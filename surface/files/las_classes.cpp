@@ -10,7 +10,6 @@
 #include "core/base/errors.h"
 #include "core/base/memory_map.h"
 #include "core/base/output_file.h"
-#include "surface/files/bytes.h"
 
 namespace skyquilt::surface {
 namespace {

@@ -1,13 +1,11 @@
 #include "surface/files/las_writer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/gis/zone_wkt.h"
-#include "surface/files/bytes.h"
 
 namespace skyquilt::surface {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "core/base/amounts.h"
 #include "core/base/errors.h"
-#include "surface/files/bytes.h"
 #include "surface/files/georeference_file.h"
 
 namespace skyquilt::surface {

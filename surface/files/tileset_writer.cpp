@@ -1,14 +1,12 @@
 #include "surface/files/tileset_writer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "core/base/output_file.h"
 #include "core/geo/ecef.h"
 #include "surface/files/gltf_document.h"
 

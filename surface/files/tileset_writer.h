@@ -8,7 +8,7 @@
 #include <map>
 #include <optional>
 
-#include "core/base/partial_path.h"
+#include "core/base/output_file.h"
 #include "surface/files/earth_place.h"
 #include "surface/files/file_writer.h"
 

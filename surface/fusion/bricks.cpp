@@ -1,10 +1,9 @@
 #include "surface/fusion/bricks.h"
 
-#include <array>
 #include <cmath>
 
 #include "core/base/cancel.h"
-#include "core/base/mix_bits.h"
+#include "core/base/random.h"
 
 namespace skyquilt::surface {
 namespace {

@@ -109,14 +109,14 @@ CellCycles LinkCycles(unsigned signs, int turned_face) {
 
 const CellTable& Cells() {
   static const CellTable table = [] {
-    CellTable made;
+    CellTable cells;
     for (unsigned signs = 0; signs < 256; ++signs) {
-      made.cycles[signs] = LinkCycles(signs, -1);
-      const int face = DoubtfulFace(signs, made.cycles[signs]);
-      made.doubtful_face[signs] = static_cast<int8_t>(face);
-      made.turned[signs] = face < 0 ? made.cycles[signs] : LinkCycles(signs, face);
+      cells.cycles[signs] = LinkCycles(signs, -1);
+      const int face = DoubtfulFace(signs, cells.cycles[signs]);
+      cells.doubtful_face[signs] = static_cast<int8_t>(face);
+      cells.turned[signs] = face < 0 ? cells.cycles[signs] : LinkCycles(signs, face);
     }
-    return made;
+    return cells;
   }();
   return table;
 }

@@ -1,8 +1,6 @@
 #include "surface/fusion/fuse.h"
 
-#include "core/base/errors.h"
 #include "surface/fusion/extract.h"
-#include "surface/fusion/key_range.h"
 
 namespace skyquilt::surface {
 

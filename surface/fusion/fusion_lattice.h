@@ -20,4 +20,11 @@ inline uint64_t VertexKey(const Eigen::Vector3i& cell, int sheet) {
   return bits(cell.x(), 20) << 44U | bits(cell.y(), 20) << 24U | bits(cell.z(), 18) << 6U | static_cast<uint64_t>(sheet);
 }
 
+// Whether a piece and its halo are inside the part of the lattice in which VertexKey tells all cells apart.
+inline bool HasDistinctKeys(const LatticeBox& box) {
+  const Eigen::Array3i limit(1 << 19, 1 << 19, 1 << 17);
+  constexpr int kHalo = 16;
+  return (box.min.array() >= -limit + kHalo).all() && (box.max.array() <= limit - kHalo).all();
+}
+
 }  // namespace skyquilt::surface

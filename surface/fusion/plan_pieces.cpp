@@ -7,11 +7,11 @@
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
-#include "core/base/mix_bits.h"
 #include "core/base/progress.h"
+#include "core/base/random.h"
 #include "surface/fusion/bricks.h"
 #include "surface/fusion/fuse.h"
-#include "surface/fusion/key_range.h"
+#include "surface/fusion/fusion_lattice.h"
 
 namespace skyquilt::surface {
 namespace {

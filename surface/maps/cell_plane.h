@@ -1,7 +1,6 @@
 // The plane through heights of cells, by least squares.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 
 namespace skyquilt::surface {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/gis/contours.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "surface/mesh/edge_uses.h"
+#include "surface/mesh/mesh_tools.h"
 
 namespace skyquilt::surface {
 

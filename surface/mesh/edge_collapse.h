@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <queue>
-#include <span>
 #include <vector>
 
 #include "surface/mesh.h"

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "surface/mesh/edge_uses.h"
 #include "surface/mesh/mesh_tools.h"
 #include "surface/mesh/vectors.h"
 

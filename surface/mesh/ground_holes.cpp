@@ -1,12 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <unordered_map>
 
-#include "core/base/mix_bits.h"
+#include "core/base/random.h"
 #include "surface/mesh/border_loops.h"
-#include "surface/mesh/edge_uses.h"
 #include "surface/mesh/hole_patch.h"
 #include "surface/mesh/mesh_tools.h"
 #include "surface/mesh/vectors.h"

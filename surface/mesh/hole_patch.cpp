@@ -19,9 +19,9 @@ struct PatchEdge {
   std::array<size_t, 2> triangle = {kNoTriangle, kNoTriangle};
 };
 
-class PatchMaker {
+class PatchBuilder {
  public:
-  PatchMaker(std::span<const Eigen::Vector3d> border, std::vector<Triangle> triangles)
+  PatchBuilder(std::span<const Eigen::Vector3d> border, std::vector<Triangle> triangles)
       : n_border_(border.size()), point_(border.begin(), border.end()), triangle_(std::move(triangles)) {}
 
   HolePatch Make(double spacing_m) {
@@ -174,7 +174,7 @@ class PatchMaker {
 std::optional<HolePatch> MakeHolePatch(std::span<const Eigen::Vector3d> border, double spacing_m) {
   std::optional<std::vector<Triangle>> ears = CutEars(border);
   if (!ears) return std::nullopt;
-  return PatchMaker(border, std::move(*ears)).Make(spacing_m);
+  return PatchBuilder(border, std::move(*ears)).Make(spacing_m);
 }
 
 }  // namespace skyquilt::surface

@@ -69,9 +69,9 @@ std::optional<DepthViews> OpenFinished(const std::filesystem::path& file, const 
 }
 
 // Renders lists of views, or loads those that an earlier run has finished.
-class ViewMaker {
+class DepthViewRenderer {
  public:
-  ViewMaker(const SurfaceInput& input, double voxel_m, std::string key, std::filesystem::path folder, base::ThreadPool& threads)
+  DepthViewRenderer(const SurfaceInput& input, double voxel_m, std::string key, std::filesystem::path folder, base::ThreadPool& threads)
       : input_(input), limits_(LimitsOf(input, voxel_m)), key_(std::move(key)), folder_(std::move(folder)), threads_(threads) {}
 
   // `coarse`: takes them; may be null.
@@ -79,15 +79,15 @@ class ViewMaker {
     if (poses.empty()) return;
     base::Progress progress(label, static_cast<double>(RaysOf(poses)), "rays");
     for (size_t i = 0; i < poses.size(); ++i) {
-      const RenderedView view = MakeOne(poses[i], folder_ / ViewFileName(made_.size()), progress);
+      const RenderedView view = MakeOne(poses[i], folder_ / ViewFileName(poses_.size()), progress);
       if (coarse != nullptr) coarse->Add(view.Get());
-      made_.push_back(view.pose);
+      poses_.push_back(view.pose);
       progress.Advance(0.0, std::to_string(i + 1) + " of " + std::to_string(poses.size()) + " views");
     }
     progress.Finish();
   }
 
-  const std::vector<ViewPose>& made() const { return made_; }
+  const std::vector<ViewPose>& poses() const { return poses_; }
   int64_t rendered_rays() const { return rendered_rays_; }
   double seconds() const { return seconds_; }
 
@@ -110,18 +110,18 @@ class ViewMaker {
   std::string key_;
   std::filesystem::path folder_;
   base::ThreadPool& threads_;
-  std::vector<ViewPose> made_;
+  std::vector<ViewPose> poses_;
   int64_t rendered_rays_ = 0;
   double seconds_ = 0.0;
 };
 
-void Report(const ViewMaker& maker, size_t photos) {
+void Report(const DepthViewRenderer& renderer, size_t photos) {
   std::string rate;
-  if (maker.rendered_rays() > 0 && maker.seconds() > 0.0) {
-    rate = ", " + base::FormatCount(static_cast<double>(maker.rendered_rays()) / maker.seconds()) + " rays/s";
+  if (renderer.rendered_rays() > 0 && renderer.seconds() > 0.0) {
+    rate = ", " + base::FormatCount(static_cast<double>(renderer.rendered_rays()) / renderer.seconds()) + " rays/s";
   }
-  base::LogInfo("surface views: {} of photos, {} virtual, {} pixels{}", photos, maker.made().size() - photos,
-                base::FormatCount(static_cast<double>(RaysOf(maker.made()))), rate);
+  base::LogInfo("surface views: {} of photos, {} virtual, {} pixels{}", photos, renderer.poses().size() - photos,
+                base::FormatCount(static_cast<double>(RaysOf(renderer.poses()))), rate);
 }
 
 }  // namespace
@@ -138,17 +138,17 @@ DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::Thr
   }
 
   base::RequireWritableFolder(folder);
-  ViewMaker maker(input, voxel_m, key, folder, threads);
+  DepthViewRenderer renderer(input, voxel_m, key, folder, threads);
   CoarseDepths coarse(RaysOf(places.training), kCoarseBytes);
-  maker.Make(places.training, "surface views", input.options.virtual_views ? &coarse : nullptr);
+  renderer.Make(places.training, "surface views", input.options.virtual_views ? &coarse : nullptr);
   if (input.options.virtual_views) {
     const auto budget = static_cast<int64_t>(kVirtualShare * static_cast<double>(RaysOf(places.training)));
     const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget};
-    maker.Make(PlanGapViews(coarse, gaps, threads), "surface views of gaps", nullptr);
+    renderer.Make(PlanGapViews(coarse, gaps, threads), "surface views of gaps", nullptr);
   }
-  JoinViews(maker.made(), key, folder, joined);
+  JoinViews(renderer.poses(), key, folder, joined);
   std::filesystem::remove_all(folder, ignored);
-  Report(maker, places.training.size());
+  Report(renderer, places.training.size());
   return DepthViews::Open(joined);
 }
 

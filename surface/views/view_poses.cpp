@@ -1,7 +1,6 @@
 #include "surface/views/view_poses.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>

@@ -6,7 +6,6 @@
 
 #include "core/base/cancel.h"
 #include "core/geo/ray_box.h"
-#include "surface/surface_box.h"
 
 namespace skyquilt::surface {
 namespace {

@@ -1,6 +1,6 @@
-#include "bench/study/class_crop.h"
-
 #include <gtest/gtest.h>
+
+#include "bench/study/picture_sheet.h"
 
 namespace skyquilt::bench {
 namespace {

@@ -1,5 +1,4 @@
 // Headers of pictures, which the list of the photo folder reads of every file.
-#include "core/image/encode.h"
 #include "core/image/image.h"
 #include "prepare/input/picture_header.h"
 #include "tests/fuzz/fuzz_target.h"

@@ -9,7 +9,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "partition/block.h"
 #include "partition/lonlat_polygon.h"
 

@@ -381,9 +381,9 @@ TEST_F(MapProductsTest, RaysStayInTheBoxesAboveTheirCell) {
   scene::SceneInfo info = scene_.Info({41.38, 2.17, 50.0}, true);
   info.blocks[0].max_enu.z() = 8.0;
   const gis::MapGrid grid = PlanMapGrid(info, ProductOptions{});
-  const MapRayGenerator maker(info, grid);
+  const MapRayGenerator generator(info, grid);
   MapRays rays;
-  maker.MakeRow(grid.height / 2, &rays);
+  generator.MakeRow(grid.height / 2, &rays);
   ASSERT_GT(rays.rays.size(), 200U);
   for (const render::Ray& ray : rays.rays) {
     EXPECT_NEAR(ray.direction_enu.norm(), 1.0, 1e-12);

@@ -23,11 +23,11 @@ using World = PatternedSurvey;
 class PointPreviewTest : public testing::Test {
  protected:
   PointPreview Make(const survey::Survey& survey, const ProductOptions& options = {}) {
-    const PointPreview made = MakePointPreview(survey, options, folder_ / "products", threads_);
+    const PointPreview preview = MakePointPreview(survey, options, folder_ / "products", threads_);
     map_ = gis::ReadReduced(folder_ / "products/preview_ortho.tif", 1 << 20).image;
-    EXPECT_EQ(map_.width, made.grid.width);
-    EXPECT_EQ(map_.height, made.grid.height);
-    return made;
+    EXPECT_EQ(map_.width, preview.grid.width);
+    EXPECT_EQ(map_.height, preview.grid.height);
+    return preview;
   }
   // The cell that holds this place; null outside the map.
   const float* CellAt(const survey::Survey& survey, const gis::MapGrid& grid, double x, double y) const {
@@ -66,20 +66,20 @@ class PointPreviewTest : public testing::Test {
 TEST_F(PointPreviewTest, ShowsTheTrueColoursAtTheirPlaces) {
   for (const bool georeferenced : {true, false}) {
     const survey::Survey survey = World::Write(folder_.path(), 0.5, georeferenced);
-    const PointPreview made = Make(survey);
-    EXPECT_EQ(made.photos, 12);
-    EXPECT_GT(made.filled, 0.9);
+    const PointPreview preview = Make(survey);
+    EXPECT_EQ(preview.photos, 12);
+    EXPECT_GT(preview.filled, 0.9);
     const double gsd_m = World::kFlight_m / World::kFocal_px;
-    EXPECT_GE(made.grid.resolution_m, 0.99 * gsd_m);
-    EXPECT_LE(made.grid.resolution_m, 1.1 * gsd_m);
-    const std::vector<double> errors = Errors(survey, made.grid);
+    EXPECT_GE(preview.grid.resolution_m, 0.99 * gsd_m);
+    EXPECT_LE(preview.grid.resolution_m, 1.1 * gsd_m);
+    const std::vector<double> errors = Errors(survey, preview.grid);
     ASSERT_GT(errors.size(), 2000U);
     EXPECT_LT(base::Quantile(errors, 0.5), 2.5);
     EXPECT_LT(base::Quantile(errors, 0.99), 10.0);
     const auto json = base::ParseJson(base::ReadFile(folder_ / "products/preview_ortho.json"));
     EXPECT_EQ(json["preview"], kFromSparsePoints);
     EXPECT_EQ(json["crs"], georeferenced ? "EPSG:32632" : "local");
-    EXPECT_EQ(made.picture, folder_ / "products/preview_ortho.png");
+    EXPECT_EQ(preview.picture, folder_ / "products/preview_ortho.png");
   }
 }
 
@@ -95,9 +95,9 @@ TEST_F(PointPreviewTest, TheNumberOfThreadsDoesNotMatter) {
 
 TEST_F(PointPreviewTest, BordersOfPhotosAreNoSteps) {
   const survey::Survey survey = World::Write(folder_.path(), 0.5, false);
-  const PointPreview made = Make(survey);
+  const PointPreview preview = Make(survey);
   // Along a line without house the colours of neighbouring cells differ by the pattern alone, which changes by less than 4 of 255 per cell.
-  const int row = static_cast<int>(std::lround(made.grid.CellOf({0.0, 9.0}).y()));
+  const int row = static_cast<int>(std::lround(preview.grid.CellOf({0.0, 9.0}).y()));
   int compared = 0;
   for (int column = 1; column < map_.width; ++column) {
     const float *here = map_.At(column, row), *before = map_.At(column - 1, row);
@@ -114,12 +114,12 @@ TEST_F(PointPreviewTest, WhereNoPhotoLooksThereIsNoData) {
   survey.photos = {survey.photos[0], survey.photos[3]};
   survey.photos[1].cam_from_enu = NadirPhoto({80.0, -12.0, 43.0}, "").cam_from_enu;
   survey.points = {survey.points[1], survey.points[2]};
-  const PointPreview made = Make(survey);
-  EXPECT_LT(made.filled, 0.8);
-  const float* gap = CellAt(survey, made.grid, 30.0, -12.0);
+  const PointPreview preview = Make(survey);
+  EXPECT_LT(preview.filled, 0.8);
+  const float* gap = CellAt(survey, preview.grid, 30.0, -12.0);
   ASSERT_NE(gap, nullptr);
   EXPECT_EQ(gap[3], 0.0F);
-  const float* seen = CellAt(survey, made.grid, World::kWest, -12.0);
+  const float* seen = CellAt(survey, preview.grid, World::kWest, -12.0);
   ASSERT_NE(seen, nullptr);
   EXPECT_EQ(seen[3], 255.0F);
 }
@@ -129,9 +129,9 @@ TEST_F(PointPreviewTest, TwoPointsAreEnoughAndNoneAreNot) {
   survey.points.resize(2);
   survey.points[0].x_in_enu = {-10.0, 9.0, World::kGround_m};
   survey.points[1].x_in_enu = {14.0, -9.0, World::kGround_m};
-  const PointPreview made = Make(survey);
-  EXPECT_GT(made.filled, 0.9);
-  EXPECT_LT(base::Quantile(Errors(survey, made.grid), 0.5), 2.5);
+  const PointPreview preview = Make(survey);
+  EXPECT_GT(preview.filled, 0.9);
+  EXPECT_LT(base::Quantile(Errors(survey, preview.grid), 0.5), 2.5);
   survey.points.clear();
   const std::string error = InputErrorOf([&] { Make(survey); });
   EXPECT_NE(error.find("no sparse points"), std::string::npos) << error;
@@ -140,9 +140,9 @@ TEST_F(PointPreviewTest, TwoPointsAreEnoughAndNoneAreNot) {
 TEST_F(PointPreviewTest, OnePhotoIsEnough) {
   survey::Survey survey = World::Write(folder_.path(), 0.0, true);
   survey.photos = {survey.photos[5]};
-  const PointPreview made = Make(survey);
-  EXPECT_EQ(made.photos, 1);
-  const float* below = CellAt(survey, made.grid, -6.5, 6.5);
+  const PointPreview preview = Make(survey);
+  EXPECT_EQ(preview.photos, 1);
+  const float* below = CellAt(survey, preview.grid, -6.5, 6.5);
   ASSERT_NE(below, nullptr);
   EXPECT_EQ(below[3], 255.0F);
 }
@@ -152,11 +152,11 @@ TEST_F(PointPreviewTest, PhotosThatCannotBeReadAreLeftOut) {
   std::filesystem::remove(folder_ / "p15.png");
   std::ofstream(folder_ / "p16.png") << "no picture";
   testing::internal::CaptureStdout();
-  const PointPreview made = Make(survey);
+  const PointPreview preview = Make(survey);
   testing::internal::GetCapturedStdout();
-  EXPECT_EQ(made.photos, 10);
-  EXPECT_EQ(made.unreadable, 2);
-  EXPECT_LT(base::Quantile(Errors(survey, made.grid), 0.5), 2.5);
+  EXPECT_EQ(preview.photos, 10);
+  EXPECT_EQ(preview.unreadable, 2);
+  EXPECT_LT(base::Quantile(Errors(survey, preview.grid), 0.5), 2.5);
   for (const survey::Photo& photo : survey.photos) std::filesystem::remove(folder_ / photo.name);
   const std::string error = InputErrorOf([&] { Make(survey); });
   EXPECT_NE(error.find("no photo can be read"), std::string::npos) << error;
@@ -168,8 +168,8 @@ TEST_F(PointPreviewTest, MasksAreKeptTo) {
   image::SavePng(image::Image8(World::kWidth, World::kHeight, 3, 255), folder_ / survey.photos[9].name);
   image::SavePng(image::Image8(World::kWidth, World::kHeight, 1, 0), folder_ / "mask.png");
   survey.photos[9].mask = (folder_ / "mask.png").string();
-  const PointPreview made = Make(survey);
-  EXPECT_LT(base::Quantile(Errors(survey, made.grid), 0.99), 12.0);
+  const PointPreview preview = Make(survey);
+  EXPECT_LT(base::Quantile(Errors(survey, preview.grid), 0.99), 12.0);
 }
 
 TEST_F(PointPreviewTest, CamerasBelowTheGroundMakeNone) {

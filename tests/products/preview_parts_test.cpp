@@ -155,18 +155,18 @@ TEST(FieldPreview, ShowsTheFieldAndMakesWayForTheOrthophoto) {
   AnalyticScene scene;
   scene.open_west = -30.0;
   const scene::SceneInfo info = scene.Info({41.38, 2.17, 50.0}, true);
-  const FieldPreview made = MakeFieldPreview(info, scene.Caster(), 10.0, {}, folder.path());
-  EXPECT_NEAR(made.filled, 0.75, 0.03);
+  const FieldPreview preview = MakeFieldPreview(info, scene.Caster(), 10.0, {}, folder.path());
+  EXPECT_NEAR(preview.filled, 0.75, 0.03);
   EXPECT_FALSE(FindPreview(folder.path(), kFromSparsePoints));
   const std::optional<FoundPreview> found = FindPreview(folder.path(), kFromContext);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->made_from, kFromContext);
-  EXPECT_EQ(found->picture, made.picture);
+  EXPECT_EQ(found->picture, preview.picture);
   const image::ImageF map = gis::ReadReduced(folder / "preview_context.tif", 1 << 20).image;
   const auto at = [&](double x, double y) {
     const geo::EnuFrame frame(info.origin);
     const Eigen::Vector2d cell =
-        made.grid.CellOf(geo::UtmFromGeodetic(frame.GeodeticFromEnu({x, y, scene.ground_z}), made.grid.zone)).array().round().matrix();
+        preview.grid.CellOf(geo::UtmFromGeodetic(frame.GeodeticFromEnu({x, y, scene.ground_z}), preview.grid.zone)).array().round().matrix();
     const float* rgba = map.At(static_cast<int>(cell.x()), static_cast<int>(cell.y()));
     return std::array<float, 4>{rgba[0], rgba[1], rgba[2], rgba[3]};
   };
@@ -179,7 +179,7 @@ TEST(FieldPreview, ShowsTheFieldAndMakesWayForTheOrthophoto) {
   ProductOptions options;
   options.ortho = false;
   MakeMapProducts(info, scene.Caster(), options, folder.path());
-  WritePreview(info, PreviewMap{made.grid, std::vector<uint8_t>(4 * made.grid.size())}, kFromSparsePoints, folder.path(), 100);
+  WritePreview(info, PreviewMap{preview.grid, std::vector<uint8_t>(4 * preview.grid.size())}, kFromSparsePoints, folder.path(), 100);
   ASSERT_EQ(FindPreviews(folder.path()).size(), 2U);
   EXPECT_EQ(FindPreviews(folder.path())[0].made_from, kFromSparsePoints);
   EXPECT_FALSE(HasOrthophoto(folder.path()));

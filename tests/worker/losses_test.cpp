@@ -6,13 +6,10 @@
 
 #include "tests/support/loss_check.h"
 #include "worker/losses/distortion_loss.h"
-#include "worker/losses/emptiness_loss.h"
-#include "worker/losses/mean_loss.h"
+#include "worker/losses/loss.h"
 #include "worker/losses/normal_loss.h"
 #include "worker/losses/photo_loss.h"
 #include "worker/losses/point_depth_loss.h"
-#include "worker/losses/robust_loss.h"
-#include "worker/losses/smoothness_loss.h"
 #include "worker/step/ray_loss.h"
 
 namespace skyquilt::worker {

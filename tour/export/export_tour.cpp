@@ -63,9 +63,9 @@ std::vector<StopPictures> RenderPictures(const Tour& tour, const ExportInput& in
       base::LogInfo("pictures of the tour: {} to render, about {}", missing.size(), base::FormatDuration(EstimateSeconds(missing, field)));
     }
   }
-  const MadePictures made = MakePictures(requests, field, input.work);
+  const PictureFiles result = MakePictures(requests, field, input.work);
   std::vector<StopPictures> pictures;
-  for (size_t i = 0; i < tour.stops.size(); ++i) pictures.push_back({tour.stops[i].id, made.files[2 * i], made.files[2 * i + 1]});
+  for (size_t i = 0; i < tour.stops.size(); ++i) pictures.push_back({tour.stops[i].id, result.files[2 * i], result.files[2 * i + 1]});
   return pictures;
 }
 

@@ -16,7 +16,7 @@
 #include "tour/export/export_parts.h"
 #include "tour/export/tour_options.h"
 #include "tour/format/tour.h"
-#include "tour/pictures/picture_field.h"
+#include "tour/pictures/render_picture.h"
 
 namespace skyquilt::tour {
 

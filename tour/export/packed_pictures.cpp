@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "core/base/cancel.h"
-#include "core/image/encode.h"
 #include "core/image/image.h"
 #include "tour/export/script_data.h"
 #include "tour/pictures/jpeg_quality.h"

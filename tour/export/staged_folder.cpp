@@ -4,7 +4,6 @@
 #include <fstream>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/partial_path.h"
+#include "core/base/output_file.h"
 
 namespace skyquilt::tour {
 

@@ -1,13 +1,11 @@
 #include "tour/export/tour_video.h"
 
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "products/video_writer.h"
-#include "tour/pictures/render_picture.h"
 #include "tour/ways/film.h"
 
 namespace skyquilt::tour {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tour/format/tour.h"
-#include "tour/pictures/picture_field.h"
+#include "tour/pictures/render_picture.h"
 #include "tour/ways/heights.h"
 
 namespace skyquilt::tour {

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "core/base/crc32.h"
+#include "core/base/deflate.h"
 #include "core/image/jpeg_structure.h"
 #include "tour/format/glb_check.h"
 

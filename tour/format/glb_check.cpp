@@ -118,12 +118,12 @@ class Document {
 
   size_t Count(const char* key) const { return Member(json_, key).size(); }
 
-  template <typename Look>
-  void Each(const char* key, const Look& look) const {
+  template <typename Visit>
+  void Each(const char* key, const Visit& visit) const {
     const Json& list = Member(json_, key);
     if (list.is_null()) return;
     if (!list.is_array()) throw Refused(std::string(key) + " must be a list");
-    for (size_t i = 0; i < list.size(); ++i) look(list[i], std::string(key) + "[" + std::to_string(i) + "]");
+    for (size_t i = 0; i < list.size(); ++i) visit(list[i], std::string(key) + "[" + std::to_string(i) + "]");
   }
 
   // A whole number from 0, below 2^32; `otherwise` when it is missing.

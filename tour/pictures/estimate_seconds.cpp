@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "tour/pictures/picture_rays.h"
-
 namespace skyquilt::tour {
 namespace {
 
@@ -35,14 +33,14 @@ double EstimateSeconds(std::span<const PictureRequest> requests, const PictureFi
   for (const PictureRequest& request : requests) {
     const int64_t end = before + request.Rays();
     if (begin != begins.end() && *begin < end) {
-      const PictureRays maker(request, field.cones);
+      const PictureRays picture_rays(request, field.cones);
       const std::vector<size_t> order = PixelsInOrder(request);
       for (; begin != begins.end() && *begin < end; ++begin) {
         const auto first = static_cast<size_t>(*begin - before);
         const std::span<const size_t> run = std::span(order).subspan(first, std::min(static_cast<size_t>(kRunRays), order.size() - first));
         std::vector<render::Ray>& some = rays[request.exposure];
         some.resize(some.size() + run.size());
-        maker.Make(run, std::span(some).last(run.size()));
+        picture_rays.Make(run, std::span(some).last(run.size()));
         taken += static_cast<int64_t>(run.size());
       }
     }

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "tour/pictures/picture_field.h"
 #include "tour/pictures/picture_request.h"
+#include "tour/pictures/render_picture.h"
 
 namespace skyquilt::tour {
 

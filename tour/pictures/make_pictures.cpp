@@ -1,6 +1,5 @@
 #include "tour/pictures/make_pictures.h"
 
-#include <algorithm>
 #include <chrono>
 #include <map>
 #include <set>
@@ -12,7 +11,6 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "tour/pictures/picture_file.h"
-#include "tour/pictures/render_picture.h"
 
 namespace skyquilt::tour {
 namespace {
@@ -48,17 +46,17 @@ std::vector<PictureRequest> MissingPictures(std::span<const PictureRequest> requ
   return missing;
 }
 
-MadePictures MakePictures(std::span<const PictureRequest> requests, const PictureField& field, const std::filesystem::path& folder) {
+PictureFiles MakePictures(std::span<const PictureRequest> requests, const PictureField& field, const std::filesystem::path& folder) {
   std::map<std::string, products::RayCaster> casters;
   for (const PictureRequest& request : requests) {
     if (!casters.contains(request.exposure)) casters[request.exposure] = field.caster(request.exposure);
   }
   base::RequireWritableFolder(folder);
-  MadePictures made;
+  PictureFiles result;
   std::set<std::string> wanted;
   for (const PictureRequest& request : requests) {
-    made.files.push_back(folder / PictureFileName(KeyOf(request, field.identity)));
-    wanted.insert(made.files.back().filename().string());
+    result.files.push_back(folder / PictureFileName(KeyOf(request, field.identity)));
+    wanted.insert(result.files.back().filename().string());
   }
   const std::vector<PictureRequest> missing = MissingPictures(requests, field, folder);
   if (missing.size() < wanted.size()) {
@@ -72,19 +70,19 @@ MadePictures MakePictures(std::span<const PictureRequest> requests, const Pictur
       const auto start = std::chrono::steady_clock::now();
       const RenderedPicture picture =
           RenderPicture(request, field, casters.at(request.exposure), [&](int64_t count) { progress.Advance(static_cast<double>(count)); });
-      made.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      made.rays += request.Rays();
-      ++made.rendered;
+      result.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      result.rays += request.Rays();
+      ++result.rendered;
       const std::string key = KeyOf(request, field.identity);
       SavePicture(Encode(picture), key, folder / PictureFileName(key));
-      progress.Advance(0.0, std::to_string(made.rendered) + " of " + std::to_string(missing.size()) + " pictures");
+      progress.Advance(0.0, std::to_string(result.rendered) + " of " + std::to_string(missing.size()) + " pictures");
     }
     progress.Finish();
-    const double rate = made.seconds > 0.0 ? static_cast<double>(made.rays) / made.seconds : 0.0;
-    base::LogInfo("pictures of the tour: {} rendered, {} rays/s", made.rendered, base::FormatCount(rate));
+    const double rate = result.seconds > 0.0 ? static_cast<double>(result.rays) / result.seconds : 0.0;
+    base::LogInfo("pictures of the tour: {} rendered, {} rays/s", result.rendered, base::FormatCount(rate));
   }
   RemoveOthers(folder, wanted);
-  return made;
+  return result;
 }
 
 }  // namespace skyquilt::tour

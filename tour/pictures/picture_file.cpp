@@ -11,7 +11,6 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/image/encode.h"
 
 namespace skyquilt::tour {
 namespace {

@@ -1,17 +1,46 @@
 #include "tour/pictures/render_picture.h"
 
 #include <algorithm>
-#include <span>
+#include <fstream>
 
 #include "core/base/cancel.h"
+#include "core/base/errors.h"
+#include "core/checkpoint/user_block.h"
 #include "products/render_views.h"
-#include "tour/pictures/picture_rays.h"
 
 namespace skyquilt::tour {
 
+namespace {
+
+// As in scene.cpp: ranks wait for each other at the end of each batch.
+constexpr size_t kRaysOfRanks = 1 << 20;
+
+// The beginning of an archive has the length and the digest of all that follows.
+std::string IdentityOf(const std::filesystem::path& scene_h5) {
+  std::string text(checkpoint::kUserBlockBytes, '\0');
+  std::ifstream stream(scene_h5, std::ios::binary);
+  if (!stream.read(text.data(), static_cast<std::streamsize>(text.size()))) {
+    throw base::InputError(scene_h5, "cannot be read any more", "Leave the scene in its place while its tour is made");
+  }
+  return text;
+}
+
+}  // namespace
+
+PictureField FieldOf(const scene::Scene& scene, const std::filesystem::path& scene_h5, base::ThreadPool& threads) {
+  PictureField field;
+  field.identity = IdentityOf(scene_h5);
+  field.cones = scene.info().scales.Cones();
+  if (scene.statistics().ranks > 1) field.batch_rays = kRaysOfRanks;
+  field.caster = [&scene, &threads](const std::string& exposure) {
+    return products::BackgroundCasterOf(scene, products::AppearanceOf(exposure, scene.info()), threads);
+  };
+  return field;
+}
+
 RenderedPicture RenderPicture(const PictureRequest& request, const PictureField& field, const products::RayCaster& caster,
                               const std::function<void(int64_t rays)>& on_rays) {
-  const PictureRays maker(request, field.cones);
+  const PictureRays picture_rays(request, field.cones);
   const std::vector<size_t> order = PixelsInOrder(request);
   const Eigen::Vector3d axis_enu = request.cam_from_enu.conjugate() * Eigen::Vector3d::UnitZ();
   RenderedPicture picture;
@@ -25,7 +54,7 @@ RenderedPicture RenderPicture(const PictureRequest& request, const PictureField&
     const std::span<const size_t> pixels = std::span(order).subspan(first, count);
     rays.resize(count);
     colors.assign(count, render::RayColor{});
-    maker.Make(pixels, rays);
+    picture_rays.Make(pixels, rays);
     caster(rays, colors);
     const image::Image8 some = products::ColorImage(colors, static_cast<int>(count), 1);
     for (size_t i = 0; i < count; ++i) {
@@ -36,6 +65,29 @@ RenderedPicture RenderPicture(const PictureRequest& request, const PictureField&
     on_rays(static_cast<int64_t>(count));
   }
   return picture;
+}
+
+namespace {
+
+std::variant<PanoramaRays, scene::CameraRays> RaysOf(const PictureRequest& request, bool cones) {
+  if (request.kind == PictureKind::kPanorama) return PanoramaRays(request.eye_enu, request.width);
+  const products::View view = ViewOfStill(request);
+  return scene::CameraRays(view.camera, view.cam_from_enu, cones);
+}
+
+}  // namespace
+
+PictureRays::PictureRays(const PictureRequest& request, bool cones) : rays_(RaysOf(request, cones)) {}
+
+void PictureRays::Make(std::span<const size_t> pixels, std::span<render::Ray> out) const {
+  std::visit([&](const auto& rays) { rays.Make(pixels, out); }, rays_);
+}
+
+std::vector<size_t> PixelsInOrder(const PictureRequest& request) {
+  if (request.kind == PictureKind::kPanorama) return PanoramaOrder(request.width);
+  std::vector<size_t> pixels;
+  scene::AppendTilePixels(request.width, request.height, 0, scene::TileCount(request.width, request.height), &pixels);
+  return pixels;
 }
 
 }  // namespace skyquilt::tour

@@ -21,7 +21,7 @@ constexpr int kRoundings = 7;
 constexpr double kLeastRounding_m = 0.05;
 constexpr double kRoundStep_rad = std::numbers::pi / 36.0;
 
-double Raised(double z, const Barrier* barrier) {
+double LiftedOver(double z, const Barrier* barrier) {
   return barrier == nullptr || barrier->z <= z ? z : barrier->z + kLift_m;
 }
 
@@ -104,7 +104,7 @@ Points ProfileAlong(const PlanLine& line, double from_z, double to_z, const Heig
   const std::vector<Barrier> barriers = heights == nullptr ? std::vector<Barrier>() : BarriersAlong(line, *heights, base_z);
   const Barrier* first = barriers.empty() ? nullptr : &barriers.front();
   const Barrier* last = barriers.empty() ? nullptr : &barriers.back();
-  Points whole = TautString(barriers, {0.0, Raised(from_z, first)}, {length, Raised(to_z, last)}, over);
+  Points whole = TautString(barriers, {0.0, LiftedOver(from_z, first)}, {length, LiftedOver(to_z, last)}, over);
   // An end that is too near itself is left straight up and reached straight down.
   if (whole.front().y() != from_z) whole.insert(whole.begin(), begin);
   if (whole.back().y() != to_z) whole.push_back(end);

@@ -12,7 +12,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "core/geo/geoid_patch.h"
+#include "core/geo/geoid.h"
 #include "core/gis/geotiff.h"
 #include "core/gis/read_maps.h"
 #include "core/image/image.h"

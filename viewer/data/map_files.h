@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/survey/survey.h"
-#include "viewer/data/survey_frame.h"
+#include "viewer/data/survey_place.h"
 
 namespace skyquilt::viewer {
 

@@ -3,9 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -18,7 +16,6 @@
 #include "viewer/data/describe_buildings.h"
 #include "viewer/data/describe_files.h"
 #include "viewer/data/opening.h"
-#include "viewer/data/survey_place.h"
 
 namespace skyquilt::viewer {
 namespace {

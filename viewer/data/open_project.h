@@ -12,7 +12,7 @@
 #include "core/geo/utm.h"
 #include "core/survey/survey.h"
 #include "viewer/data/file_look.h"
-#include "viewer/data/survey_frame.h"
+#include "viewer/data/survey_place.h"
 
 namespace skyquilt::viewer {
 

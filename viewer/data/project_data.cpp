@@ -4,7 +4,6 @@
 #include <deque>
 #include <functional>
 #include <list>
-#include <map>
 #include <string_view>
 #include <utility>
 

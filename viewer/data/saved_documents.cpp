@@ -6,7 +6,6 @@
 
 #include "core/base/checked_json.h"
 #include "core/base/errors.h"
-#include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "tour/format/read_tour.h"

@@ -8,7 +8,6 @@
 #include "core/base/checked_json.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/log.h"
 #include "core/base/memory_map.h"
 #include "core/base/sha256.h"
 #include "tour/format/asset_check.h"

@@ -7,7 +7,6 @@
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
-#include "core/base/log.h"
 #include "viewer/engine/frame_encoder.h"
 #include "viewer/engine/inbox.h"
 #include "viewer/engine/scene_holder.h"

@@ -2,7 +2,6 @@
 // then larger ones in turn. A newer view of a client replaces its older one within one batch of rays (about 10 ms).
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -9,16 +10,31 @@
 #include <vector>
 
 #include "coordinator/rendering/scene_session.h"
+#include "core/comm/communicator.h"
 #include "viewer/data/file_look.h"
 #include "viewer/data/project_data.h"
 #include "viewer/data/survey_place.h"
 #include "viewer/engine/batch_size.h"
 #include "viewer/engine/engine.h"
-#include "viewer/engine/one_process.h"
 #include "viewer/engine/renderer.h"
 #include "viewer/protocol/replies.h"
 
 namespace skyquilt::viewer {
+
+// For a scene that rank 0 renders by itself while the other ranks hold another one.
+class OneProcess : public comm::SingleCommunicator {
+ public:
+  // ranks: the real communicator, which ends the other ranks when this one fails. Must outlive it.
+  explicit OneProcess(comm::Communicator& ranks) : ranks_(ranks) {}
+
+  [[noreturn]] void Abort(int exit_status) override {
+    ranks_.Abort(exit_status);
+    std::abort();  // not reached, which the compiler does not see
+  }
+
+ private:
+  comm::Communicator& ranks_;
+};
 
 class SceneHolder : public Renderer {
  public:

@@ -8,7 +8,7 @@
 
 #include "core/base/errors.h"
 #include "core/image/depth_code.h"
-#include "core/image/encode.h"
+#include "core/image/image.h"
 
 namespace skyquilt::viewer {
 namespace {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "core/base/cancel.h"
-#include "core/base/errors.h"
 #include "core/image/image.h"
 #include "core/scene/camera_rays.h"
 #include "viewer/protocol/replies.h"

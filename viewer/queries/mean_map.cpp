@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/errors.h"
-#include "core/image/encode.h"
+#include "core/image/image.h"
 
 namespace skyquilt::viewer {
 namespace {

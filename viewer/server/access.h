@@ -55,4 +55,9 @@ class Access {
   Clock::time_point paused_until_{};
 };
 
+// For tokens and cookies: 32 bytes from the system's random generator as 64 hex digits. Throws std::system_error.
+std::string NewSecret();
+// Takes the same time wherever the texts differ, so that a secret cannot be found digit by digit. Only their lengths can be learned.
+bool EqualInConstantTime(std::string_view a, std::string_view b);
+
 }  // namespace skyquilt::viewer::server

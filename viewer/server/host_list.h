@@ -28,4 +28,8 @@ class HostList {
 // The part of a link before the port: the address, or for a server on all addresses one under which others reach it.
 std::string LinkHost(const std::string& address, const std::vector<std::string>& extra);
 
+// Under which this machine may be reached, for a server that listens on all addresses: the host name and the addresses of all network interfaces;
+// IPv6 addresses in brackets, without link-local ones.
+std::vector<std::string> OwnHosts();
+
 }  // namespace skyquilt::viewer::server

@@ -6,7 +6,6 @@
 
 #include "core/base/log.h"
 #include "viewer/server/listener.h"
-#include "viewer/server/net.h"
 #include "viewer/server/server_state.h"
 //
 #include <boost/asio/post.hpp>

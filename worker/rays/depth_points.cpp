@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <span>
 
-#include "core/base/mix_bits.h"
 #include "core/camera/pixel_pitch.h"
 #include "core/survey/training_points.h"
 

@@ -12,7 +12,7 @@
 #include "core/brightness/response.h"
 #include "core/camera/camera.h"
 #include "core/camera/corner_radius.h"
-#include "core/camera/lens.h"
+#include "core/camera/distortion.h"
 #include "core/camera/pixel_pitch.h"
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"

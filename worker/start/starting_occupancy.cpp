@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/render/march.h"
-#include "core/scene/scene.h"
+#include "core/render/ray.h"
 #include "worker/start/view_counter.h"
 
 namespace skyquilt::worker {

@@ -4,9 +4,8 @@
 
 #include "core/brightness/exposure.h"
 #include "core/image/srgb.h"
-#include "worker/losses/mean_loss.h"
+#include "worker/losses/loss.h"
 #include "worker/losses/photo_loss.h"
-#include "worker/losses/smoothness_loss.h"
 
 namespace skyquilt::worker {
 namespace {

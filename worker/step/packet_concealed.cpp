@@ -1,6 +1,5 @@
 #include "worker/step/packet_concealed.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/image/srgb.h"

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/render/composite.h"
+#include "worker/losses/loss.h"
 #include "worker/losses/point_depth_loss.h"
-#include "worker/losses/robust_loss.h"
 #include "worker/planes/plane_fit.h"
 
 namespace skyquilt::worker {

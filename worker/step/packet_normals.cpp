@@ -1,6 +1,5 @@
 #include "worker/step/packet_normals.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "core/render/footprint.h"

@@ -1,7 +1,7 @@
 #include "worker/step/ray_loss.h"
 
 #include "core/brightness/exposure.h"
-#include "worker/losses/emptiness_loss.h"
+#include "worker/losses/loss.h"
 #include "worker/losses/photo_loss.h"
 
 namespace skyquilt::worker {

@@ -11,7 +11,6 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/progress.h"
-#include "core/image/encode.h"
 #include "prepare/input/picture_header.h"
 
 namespace skyquilt::prepare::input {

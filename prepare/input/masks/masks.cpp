@@ -7,7 +7,6 @@
 #include <span>
 #include <utility>
 
-#include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/text.h"

@@ -1,7 +1,6 @@
 #include "prepare/poses/seed/seed_poses.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "core/base/cancel.h"

@@ -1,6 +1,5 @@
 #include "prepare/poses/seed/seed_rotation.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>

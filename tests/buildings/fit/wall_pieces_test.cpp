@@ -1,5 +1,3 @@
-#include "buildings/fit/wall_pieces.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "core/base/crc32.h"
-
 #include <gtest/gtest.h>
+
+#include "core/base/deflate.h"
 
 namespace skyquilt::base {
 namespace {

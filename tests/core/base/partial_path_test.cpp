@@ -1,9 +1,8 @@
-#include "core/base/partial_path.h"
-
 #include <gtest/gtest.h>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/output_file.h"
 #include "tests/support/error_of.h"
 #include "tests/support/in_temporary_folder.h"
 

@@ -1,5 +1,3 @@
-#include "core/geo/geoid_patch.h"
-
 #include <stdexcept>
 
 #include "core/geo/geoid.h"

@@ -1,9 +1,9 @@
-#include "core/page/ticks.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "core/page/plot_frame.h"
 
 namespace skyquilt::page {
 namespace {

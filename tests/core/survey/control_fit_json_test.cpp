@@ -1,5 +1,3 @@
-#include "core/survey/control_fit_json.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
+#include "core/survey/control_fit.h"
 #include "core/survey/survey.h"
 #include "tests/support/in_temporary_folder.h"
 

@@ -1,5 +1,3 @@
-#include "core/survey/height_reference_of.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -10,7 +10,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 #include "tests/support/error_of.h"
 #include "tests/support/in_temporary_folder.h"
 

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "core/image/encode.h"
 #include "core/image/image.h"
 #include "prepare/input/list_files.h"
 #include "tests/support/temporary_folder.h"

@@ -11,7 +11,7 @@
 #include "core/base/child_process.h"
 #include "core/base/order_statistics.h"
 #include "core/linear/linear.h"
-#include "prepare/poses/pose_pairs.h"
+#include "prepare/poses/pairs.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"
 

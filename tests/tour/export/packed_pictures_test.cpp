@@ -16,8 +16,8 @@ class Packed : public testing::Test {
   Packed() {
     const std::vector<PictureRequest> requests = {StillAt({0.0, 0.0, 60.0}, Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), 60.0, 150, 101, "normal"),
                                                   PanoramaAt({0.0, 0.0, 60.0}, 2048, "normal")};
-    const MadePictures made = MakePictures(requests, counted_.field, folder_ / "work");
-    stops_ = {{"one", made.files[0], made.files[1]}};
+    const PictureFiles result = MakePictures(requests, counted_.field, folder_ / "work");
+    stops_ = {{"one", result.files[0], result.files[1]}};
   }
   PicturePlan Fit(int64_t limit) { return FitPicturesOfStops(stops_, limit, threads_); }
   // Checks that the files have the bytes that were planned.

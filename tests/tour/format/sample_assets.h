@@ -10,7 +10,6 @@
 
 #include "core/base/json_text.h"
 #include "core/base/sha256.h"
-#include "core/image/encode.h"
 #include "core/image/image.h"
 
 namespace skyquilt::tour {

@@ -34,13 +34,13 @@ class MakePicturesTest : public ::testing::Test {
 };
 
 TEST_F(MakePicturesTest, ASecondRunRendersNothing) {
-  const MadePictures first = MakePictures(requests_, counted_.field, work_.path());
+  const PictureFiles first = MakePictures(requests_, counted_.field, work_.path());
   EXPECT_EQ(first.rendered, 3);
   EXPECT_EQ(counted_.n_rays, 2 * 64 * 32 + 40 * 30);
   EXPECT_EQ(first.rays, counted_.n_rays);
   ASSERT_EQ(first.files.size(), 3U);
   const std::string bytes = base::ReadFile(first.files[1]);
-  const MadePictures second = MakePictures(requests_, counted_.field, work_.path());
+  const PictureFiles second = MakePictures(requests_, counted_.field, work_.path());
   EXPECT_EQ(second.rendered, 0);
   EXPECT_EQ(counted_.n_rays, first.rays);
   EXPECT_EQ(second.files, first.files);
@@ -86,12 +86,12 @@ TEST_F(MakePicturesTest, ContinuesAfterAnInterruption) {
 }
 
 TEST_F(MakePicturesTest, RendersWhatHasChangedAndRemovesTheRest) {
-  const MadePictures before = MakePictures(requests_, counted_.field, work_.path());
+  const PictureFiles before = MakePictures(requests_, counted_.field, work_.path());
   base::WriteFileAtomically(work_ / "notes.txt", "not ours");
   // As a killed process leaves it.
   base::WriteFileAtomically(work_ / ("." + before.files[0].filename().string() + ".tmp.123.0"), "half");
   const auto expect_rendered = [&](int64_t rendered, const char* why) {
-    const MadePictures made = MakePictures(requests_, counted_.field, work_.path());
+    const PictureFiles made = MakePictures(requests_, counted_.field, work_.path());
     EXPECT_EQ(made.rendered, rendered) << why;
     std::set<std::string> expected = {"notes.txt"};
     for (const auto& file : made.files) expected.insert(file.filename().string());
@@ -115,7 +115,7 @@ TEST_F(MakePicturesTest, RendersWhatHasChangedAndRemovesTheRest) {
 
 TEST_F(MakePicturesTest, ExposuresAreThoseOfTheRequests) {
   const std::vector<PictureRequest> requests = {PanoramaAt({0.0, 0.0, 30.0}, 32, "normal"), PanoramaAt({0.0, 0.0, 30.0}, 32, "-1")};
-  const MadePictures made = MakePictures(requests, counted_.field, work_.path());
+  const PictureFiles made = MakePictures(requests, counted_.field, work_.path());
   const image::Image8 normal = ColorsOf(OpenPicture(made.files[0])), darker = ColorsOf(OpenPicture(made.files[1]));
   // Ground east of the eye is red.
   EXPECT_EQ(normal.At(24, 15)[0], 255);

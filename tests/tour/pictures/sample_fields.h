@@ -7,7 +7,7 @@
 #include "tests/products/analytic_scene.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/viewer/engine/whole_scene.h"
-#include "tour/pictures/picture_field.h"
+#include "tour/pictures/render_picture.h"
 
 namespace skyquilt::tour {
 

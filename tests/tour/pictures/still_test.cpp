@@ -29,8 +29,8 @@ void ExpectWhatRenderWrites(const SceneField& scene, const std::string& exposure
 
   const TemporaryFolder work;
   const PictureRequest still = StillAt({1.25, -2.0, 6.5}, views[0].cam_from_enu.rotation, kFovy_deg, kWidth, kHeight, exposure);
-  const MadePictures made = MakePictures({&still, 1}, scene.field, work.path());
-  const StoredPicture picture = OpenPicture(made.files.at(0));
+  const PictureFiles result = MakePictures({&still, 1}, scene.field, work.path());
+  const StoredPicture picture = OpenPicture(result.files.at(0));
   EXPECT_EQ(picture.png, base::ReadFile(renders / "stop.png"));
 }
 

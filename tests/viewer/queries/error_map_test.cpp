@@ -3,7 +3,6 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
-#include "core/image/encode.h"
 #include "core/image/image.h"
 #include "products/camera_path.h"
 #include "tests/support/error_of.h"

@@ -9,7 +9,6 @@
 
 #include "viewer/server/host_list.h"
 #include "viewer/server/request_target.h"
-#include "viewer/server/secrets.h"
 
 namespace skyquilt::viewer::server {
 namespace {

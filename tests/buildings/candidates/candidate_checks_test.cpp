@@ -1,4 +1,4 @@
-#include "buildings/candidates/matched_points.h"
+#include "buildings/candidates/candidate_checks.h"
 
 #include <gtest/gtest.h>
 

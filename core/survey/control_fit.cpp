@@ -1,4 +1,4 @@
-#include "core/survey/control_fit_json.h"
+#include "core/survey/control_fit.h"
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -6,23 +6,18 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/survey/geo_fit_json.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::survey {
 namespace {
 
+using base::NanIfNull;
+using base::NumberOrNull;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::array<std::pair<ControlUse, const char*>, 4> kUses = {
     {{ControlUse::kControl, "control"}, {ControlUse::kCheck, "check"}, {ControlUse::kRejected, "rejected"}, {ControlUse::kUnseen, "unseen"}}};
-
-const char* UseName(ControlUse use) {
-  for (const auto& [known, name] : kUses) {
-    if (known == use) return name;
-  }
-  return "unseen";
-}
 
 ControlUse UseFromName(const std::string& label, const std::string& name) {
   for (const auto& [use, known] : kUses) {
@@ -78,7 +73,7 @@ ordered_json ToJson(const ControlFit& fit) {
           {{"photo", mark.photo}, {"pixel", {mark.pixel.x(), mark.pixel.y()}}, {"error_px", NumberOrNull(mark.error_px)}, {"used", mark.used}});
     }
     points.push_back({{"label", point.label},
-                      {"use", UseName(point.use)},
+                      {"use", NameOf(point.use)},
                       {"given_in_enu_m", ToJson(point.given_in_enu)},
                       {"given_sigma_m", {NumberOrNull(point.given_sigma_m.x()), NumberOrNull(point.given_sigma_m.y())}},
                       {"error_m", ToJson(point.error_m)},

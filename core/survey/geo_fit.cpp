@@ -1,20 +1,15 @@
-#include "core/survey/geo_fit_json.h"
+#include "core/survey/geo_fit.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "core/base/json_text.h"
 
 namespace skyquilt::survey {
 
+using base::NanIfNull;
+using base::NumberOrNull;
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-ordered_json NumberOrNull(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-double NanIfNull(const json& value) {
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
-}
 
 ordered_json ToJson(const geo::PlaceAccuracy& accuracy) {
   return {{"scale_percent", NumberOrNull(accuracy.scale_percent)},

@@ -10,9 +10,9 @@
 
 namespace skyquilt::partition {
 
-// Training pixels that a block needs for each entry of the largest table: with three colours of each, about two numbers that are seen for every
-// parameter that is learned (8 levels of 4 features).
-constexpr double kPixelsPerEntry = 18.0;
+// Photos that must show a surface voxel, in pixels of the ground sampling distance, for a block to learn it: 18 * 2^17 training pixels fill a block
+// with the default tables of 2^17 entries, of which each holds 4 voxels that are 1.5 pixels wide.
+constexpr double kViewsOfVoxel = 2.0;
 // Optimiser steps of a block, on average; after fewer, larger blocks look better, because each gets the steps of several.
 constexpr double kBlockSteps = 1500.0;
 // Steps of the block that gets least: those at the border of a survey have a small share of the time.

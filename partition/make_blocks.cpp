@@ -148,9 +148,14 @@ std::vector<Block> BlocksOf(const Inputs& in, const BlockGrid& grid) {
   return blocks;
 }
 
+// Surface voxels that the largest table holds.
+double MostVoxels(const PartitionOptions& options) {
+  return std::exp2(options.max_log2_table_size) * options.max_voxels_per_entry;
+}
+
 // Whether no block has more surface than the largest table holds.
 bool FitsTables(const Inputs& in, const BlockGrid& grid) {
-  const double most_voxels = std::exp2(in.options.max_log2_table_size) * in.options.max_voxels_per_entry;
+  const double most_voxels = MostVoxels(in.options);
   const std::vector<double> seen_gsds = SeenGsds(in.seen, grid);
   for (size_t i = 0; i < seen_gsds.size(); ++i) {
     const int index = static_cast<int>(i);
@@ -187,7 +192,7 @@ AutoGrid MakeGrid(const Inputs& in, const BlockRequest& request, double block_st
   // Heights that were given one per block do not fit grids of other sizes.
   input.least_share = [&in](const BlockGrid& grid) { return in.options.altitudes.empty() ? LeastShare(BlocksOf(in, grid)) : 1.0; };
   input.training_pixels = TrainingPixels(in.survey, in.image_width);
-  input.pixels_per_block = kPixelsPerEntry * std::exp2(in.options.max_log2_table_size);
+  input.pixels_per_block = kViewsOfVoxel * in.options.voxel_per_gsd * in.options.voxel_per_gsd * MostVoxels(in.options);
   input.block_steps = block_steps;
   return ChooseGrid(input);
 }

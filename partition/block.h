@@ -14,12 +14,11 @@
 namespace skyquilt::partition {
 
 struct Block : geo::BlockBox {
-  int id = 0;                   // position in BlockSet::blocks
-  std::string name;             // "r0c1": row from the south, column from the west
-  double altitude_agl_m = 0.0;  // of the cameras above it: from the options or from the flight (altitude.h)
-  double flown_agl_m = 0.0;     // the same from the flight, whatever the options say; 0 in files of older programs
-  double gsd_m = 0.0;  // ground sampling distance at the training width: by its points (seen_gsd.h) or at a given altitude, but then no finer than
-                       // the photos' pixels
+  int id = 0;                    // position in BlockSet::blocks
+  std::string name;              // "r0c1": row from the south, column from the west
+  double altitude_agl_m = 0.0;   // of the cameras above it (altitude.h): from the options or from the flight
+  double flown_agl_m = 0.0;      // the same from the flight, whatever the options say; 0 in files of older programs
+  double gsd_m = 0.0;            // at the training width, on its points (seen_gsd.h) or from a given altitude, no finer than the photos' pixels
   double finest_voxel_m = 0.0;   // cell size of the finest level of its encoding
   int log2_table_size = 0;       // of its hash tables; 0 when empty
   std::vector<int> photos;       // indices into Survey::photos: training photos that see the box; in files of older programs held-out ones, too

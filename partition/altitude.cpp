@@ -4,19 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
+#include "core/survey/seen_distance.h"
 
 namespace skyquilt::partition {
 
 std::vector<PhotoAltitude> TrainingAltitudes(const survey::Survey& survey, const Eigen::Vector2d& centre, double ground_m) {
   std::vector<PhotoAltitude> altitudes;
   altitudes.reserve(survey.photos.size());
-  for (const survey::Photo& photo : survey.photos) {
+  const std::vector<std::optional<survey::SeenDistance>> seen = survey::DistancesOfLevelPhotos(survey);
+  for (size_t i = 0; i < survey.photos.size(); ++i) {
+    const survey::Photo& photo = survey.photos[i];
     if (photo.is_test) continue;
     const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
-    double agl = photo.agl_m;
+    double agl = seen[i] ? seen[i]->median_m : photo.agl_m;
     if (!std::isfinite(agl) || agl <= 0.0) agl = eye.z() - ground_m;
     if (agl <= 0.0) agl = std::max(1e-3, (eye - Eigen::Vector3d(centre.x(), centre.y(), ground_m)).norm());
     altitudes.push_back({eye.head<2>(), agl});

@@ -1,4 +1,5 @@
-// Flying height above the ground, per photo and per block. It decides the ground sampling distance and so how fine a block's field must be.
+// Flying height above the ground, per photo and per block; of photos that look level, their distance to what they show. It decides the ground
+// sampling distance where too few sparse points tell it (seen_gsd.h), and so how fine a block's field must be.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,11 +13,12 @@ namespace skyquilt::partition {
 
 struct PhotoAltitude {
   Eigen::Vector2d eye_enu = Eigen::Vector2d::Zero();  // the camera's place on the map, metres
-  double agl_m = 0.0;                                 // its height above ground, > 0
+  double agl_m = 0.0;                                 // its height above ground, or its distance to what it shows; > 0
 };
 
-// Of every training photo: Photo::agl_m where known, otherwise the camera's height above `ground_m`. A camera that is not above the ground gets its
-// distance from `centre` instead, because its ground sampling distance depends on that.
+// Of every training photo: Photo::agl_m where known, otherwise the camera's height above `ground_m`. A photo that looks level gets its median
+// distance to the points that it observed, where they are enough; another camera that is not above the ground its distance from `centre`: ground
+// sampling distances depend on that.
 std::vector<PhotoAltitude> TrainingAltitudes(const survey::Survey& survey, const Eigen::Vector2d& centre, double ground_m);
 
 // Metres: median over the photos taken above the rectangle, or over the five nearest photos when fewer than two were taken there. Photos taken

@@ -16,9 +16,9 @@ namespace skyquilt::partition {
 struct Block : geo::BlockBox {
   int id = 0;                    // position in BlockSet::blocks
   std::string name;              // "r0c1": row from the south, column from the west
-  double altitude_agl_m = 0.0;   // of the cameras above it: from the options or from the flight
+  double altitude_agl_m = 0.0;   // of the cameras above it (altitude.h): from the options or from the flight
   double flown_agl_m = 0.0;      // the same from the flight, whatever the options say; 0 in files of older programs
-  double gsd_m = 0.0;            // ground sampling distance at that altitude and the training image width, but no finer than the photos' pixels
+  double gsd_m = 0.0;            // at the training width, on its points (seen_gsd.h) or from a given altitude, no finer than the photos' pixels
   double finest_voxel_m = 0.0;   // cell size of the finest level of its encoding
   int log2_table_size = 0;       // of its hash tables; 0 when empty
   std::vector<int> photos;       // indices into Survey::photos: training photos that see the box; in files of older programs held-out ones, too
@@ -39,6 +39,9 @@ struct BlockSet {
   int image_width = 0;        // training width the capacities were computed for; 0 = full size
   std::string config_hash;    // of the options and the survey the blocks were made from
   std::vector<Block> blocks;  // row-major from the south-west
+  // For the log; not in the file.
+  std::string number_reason;            // what decided how many there are, to follow "2 x 3 blocks: "
+  bool area_is_that_of_points = false;  // because photos cover no ground
 };
 
 // Writes or reads a GeoJSON FeatureCollection (RFC 7946): polygons in longitude, latitude (counter-clockwise), the fields of Block as properties.

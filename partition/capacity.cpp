@@ -20,11 +20,14 @@ const camera::Camera& CommonCamera(const survey::Survey& survey) {
 
 }  // namespace
 
-double SurveyGsd(const survey::Survey& survey, double agl_m, int image_width) {
-  const camera::Camera& camera = CommonCamera(survey);
-  if (image_width <= 0 || image_width >= camera.width) return camera::GroundSamplingDistance(camera, agl_m);
+double TrainingGsd(const camera::Camera& camera, double distance_m, int image_width) {
+  if (image_width <= 0 || image_width >= camera.width) return camera::GroundSamplingDistance(camera, distance_m);
   const int height = std::max(1, static_cast<int>(std::lround(static_cast<double>(camera.height) * image_width / camera.width)));
-  return camera::GroundSamplingDistance(camera.Resized(image_width, height), agl_m);
+  return camera::GroundSamplingDistance(camera.Resized(image_width, height), distance_m);
+}
+
+double SurveyGsd(const survey::Survey& survey, double agl_m, int image_width) {
+  return TrainingGsd(CommonCamera(survey), agl_m, image_width);
 }
 
 double Roughness(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector2d& low, const Eigen::Vector2d& high) {

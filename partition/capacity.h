@@ -11,8 +11,9 @@
 
 namespace skyquilt::partition {
 
-// Metres per pixel of the camera that took most training photos, `agl_m` above the ground, for images scaled down to image_width pixels (full size if
-// that is 0 or more than the camera has).
+// Metres per pixel of a camera at this distance, for images scaled down to image_width pixels (full size if that is 0 or more than the camera has).
+double TrainingGsd(const camera::Camera& camera, double distance_m, int image_width);
+// The same of the camera that took most training photos, `agl_m` above the ground.
 double SurveyGsd(const survey::Survey& survey, double agl_m, int image_width);
 
 // Estimated area of walls and slopes per area of ground, in [0, 4]: the mean height difference between neighbouring cells of a raster of the points,

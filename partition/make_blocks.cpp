@@ -7,8 +7,10 @@
 #include "core/base/file.h"
 #include "core/base/order_statistics.h"
 #include "partition/altitude.h"
+#include "partition/auto_grid.h"
 #include "partition/block_grid.h"
 #include "partition/capacity.h"
+#include "partition/seen_gsd.h"
 #include "partition/survey_area.h"
 #include "partition/vertical_range.h"
 #include "partition/visibility.h"
@@ -27,6 +29,7 @@ struct Inputs {
   std::vector<Eigen::Vector3d> points;
   SurveyArea area;
   std::vector<PhotoAltitude> altitudes;  // of the training photos
+  std::vector<SeenPoint> seen;
 };
 
 double MarginOf(const BlockGrid& grid) {
@@ -42,43 +45,14 @@ double LowestAltitude(const Inputs& in, double flown_agl_m) {
   return std::min(flown_agl_m, base::Quantile(std::move(agl_m), kLowest));
 }
 
+// Of a block whose photos were taken from this height, by the points in it; by the height where they are too few (NaN).
+double FlownGsd(const Inputs& in, double flown_agl_m, double seen_gsd_m) {
+  return std::isfinite(seen_gsd_m) ? seen_gsd_m : SurveyGsd(in.survey, flown_agl_m, in.image_width);
+}
+
 double VoxelsOf(const Inputs& in, const BlockGrid& grid, int index, double voxel_m) {
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(MarginOf(grid));
   return SurfaceVoxels(in.area, in.points, grid.Min(index) - margin, grid.Max(index) + margin, voxel_m);
-}
-
-// Uses more and more blocks until the surface of each fits the largest table, or the next grid would have more than kMaxBlocks.
-BlockGrid AutoGrid(const Inputs& in) {
-  const Eigen::Vector2d extent = in.area.max_enu - in.area.min_enu;
-  const double largest_table = std::exp2(in.options.max_log2_table_size);
-  const double most_voxels = largest_table * in.options.max_voxels_per_entry;
-  BlockGrid grid = SplitByCount(in.area.min_enu, in.area.max_enu, 1, 1);
-  int rows = 1;
-  int columns = 1;
-  for (double side = extent.maxCoeff();; side *= 0.9) {
-    const int next_rows = std::max(1, static_cast<int>(std::lround(extent.y() / side)));
-    const int next_columns = std::max(1, static_cast<int>(std::lround(extent.x() / side)));
-    if (static_cast<double>(next_rows) * next_columns > kMaxBlocks) return grid;
-    if (side < extent.maxCoeff() && next_rows == rows && next_columns == columns) continue;
-    grid = SplitByCount(in.area.min_enu, in.area.max_enu, next_rows, next_columns);
-    rows = next_rows;
-    columns = next_columns;
-    // A factor of sqrt(2) too much is accepted, as Log2TableSize rounds to the nearest power of two.
-    bool fits = true;
-    for (int index = 0; fits && index < rows * columns; ++index) {
-      const double agl = BlockAltitude(in.altitudes, grid.Min(index), grid.Max(index));
-      const double voxel_m = in.options.voxel_per_gsd * SurveyGsd(in.survey, agl, in.image_width);
-      fits = VoxelsOf(in, grid, index, voxel_m) <= most_voxels * std::sqrt(2.0);
-    }
-    if (fits) return grid;
-  }
-}
-
-BlockGrid MakeGrid(const Inputs& in) {
-  const BlockRequest request = ParseBlockRequest(in.options.blocks);
-  if (request.kind == BlockRequestKind::kCount) return SplitByCount(in.area.min_enu, in.area.max_enu, request.rows, request.columns);
-  if (request.kind == BlockRequestKind::kSize) return SplitBySize(in.area.min_enu, in.area.max_enu, request.size_m);
-  return AutoGrid(in);
 }
 
 void CheckAltitudeCount(const PartitionOptions& options, int rows, int columns) {
@@ -89,17 +63,21 @@ void CheckAltitudeCount(const PartitionOptions& options, int rows, int columns) 
                          std::to_string(columns) + " column(s)); give one per block in row-major order from the south-west");
 }
 
-// Fills in everything that does not depend on the photos that see the block.
-Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index) {
+// Fills in everything that does not depend on the photos that see the block. seen_gsd_m: as in FlownGsd.
+Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index, double seen_gsd_m) {
   Block block;
   block.id = index;
   block.name = "r" + std::to_string(index / grid.columns()) + "c" + std::to_string(index % grid.columns());
   block.margin_m = MarginOf(grid);
   block.flown_agl_m = BlockAltitude(in.altitudes, grid.Min(index), grid.Max(index));
-  block.altitude_agl_m = in.options.altitudes.empty() ? block.flown_agl_m : in.options.altitudes[static_cast<size_t>(index)];
-  // Voxels far finer than the photos' pixels cannot be told apart by them.
-  const double sharpest_agl_m = std::max(block.altitude_agl_m, LowestAltitude(in, block.flown_agl_m));
-  block.gsd_m = SurveyGsd(in.survey, sharpest_agl_m, in.image_width);
+  block.altitude_agl_m = block.flown_agl_m;
+  block.gsd_m = FlownGsd(in, block.flown_agl_m, seen_gsd_m);
+  if (!in.options.altitudes.empty()) {
+    block.altitude_agl_m = in.options.altitudes[static_cast<size_t>(index)];
+    // Voxels far finer than the photos' pixels cannot be told apart by them.
+    const double sharpest_m = std::min(block.gsd_m, SurveyGsd(in.survey, LowestAltitude(in, block.flown_agl_m), in.image_width));
+    block.gsd_m = std::max(SurveyGsd(in.survey, block.altitude_agl_m, in.image_width), sharpest_m);
+  }
   block.finest_voxel_m = in.options.voxel_per_gsd * block.gsd_m;
   block.min_enu.head<2>() = grid.Min(index);
   block.max_enu.head<2>() = grid.Max(index);
@@ -155,15 +133,82 @@ void ScaleCosts(std::vector<Block>& blocks) {
   for (Block& block : blocks) block.cost = sum > 0.0 ? block.cost / sum : 0.0;
 }
 
+std::vector<Block> BlocksOf(const Inputs& in, const BlockGrid& grid) {
+  const std::vector<double> seen_gsds = SeenGsds(in.seen, grid);
+  std::vector<Block> blocks;
+  for (size_t i = 0; i < seen_gsds.size(); ++i) blocks.push_back(MakeBlock(in, grid, static_cast<int>(i), seen_gsds[i]));
+  if (in.options.heights == "survey") UseCommonHeights(blocks);
+  std::vector<Box> boxes;
+  for (const Block& block : blocks) boxes.push_back({block.TrainMin(), block.TrainMax()});
+  std::vector<BoxVisibility> views = FindVisibility(in.survey, boxes, in.image_width);
+  for (size_t i = 0; i < blocks.size(); ++i) {
+    AddViews(blocks[i], std::move(views[i]), VoxelsOf(in, grid, blocks[i].id, blocks[i].finest_voxel_m), in.options);
+  }
+  ScaleCosts(blocks);
+  return blocks;
+}
+
+// Surface voxels that the largest table holds.
+double MostVoxels(const PartitionOptions& options) {
+  return std::exp2(options.max_log2_table_size) * options.max_voxels_per_entry;
+}
+
+// Whether no block has more surface than the largest table holds.
+bool FitsTables(const Inputs& in, const BlockGrid& grid) {
+  const double most_voxels = MostVoxels(in.options);
+  const std::vector<double> seen_gsds = SeenGsds(in.seen, grid);
+  for (size_t i = 0; i < seen_gsds.size(); ++i) {
+    const int index = static_cast<int>(i);
+    const double gsd_m = FlownGsd(in, BlockAltitude(in.altitudes, grid.Min(index), grid.Max(index)), seen_gsds[i]);
+    // A factor of sqrt(2) too much is accepted, as Log2TableSize rounds to the nearest power of two.
+    if (VoxelsOf(in, grid, index, in.options.voxel_per_gsd * gsd_m) > most_voxels * std::sqrt(2.0)) return false;
+  }
+  return true;
+}
+
+int BlocksWithPoints(const Inputs& in, const BlockGrid& grid) {
+  std::vector<char> has_points(static_cast<size_t>(grid.rows()) * static_cast<size_t>(grid.columns()), 0);
+  for (const Eigen::Vector3d& x : in.points) {
+    if (const int cell = grid.CellOf(x.x(), x.y()); cell >= 0) has_points[static_cast<size_t>(cell)] = 1;
+  }
+  return static_cast<int>(std::count(has_points.begin(), has_points.end(), 1));
+}
+
+double LeastShare(const std::vector<Block>& blocks) {
+  double least = 1.0;
+  for (const Block& block : blocks) {
+    if (!block.empty) least = std::min(least, block.cost);
+  }
+  return least;
+}
+
+AutoGrid MakeGrid(const Inputs& in, const BlockRequest& request, double block_steps) {
+  const Eigen::Vector2d low = in.area.min_enu, high = in.area.max_enu;
+  if (request.kind == BlockRequestKind::kCount) return {SplitByCount(low, high, request.rows, request.columns), "as asked for"};
+  if (request.kind == BlockRequestKind::kSize) return {SplitBySize(low, high, request.size_m), "of the size asked for"};
+  AutoGridInput input{.min_enu = low, .max_enu = high};
+  input.fits = [&in](const BlockGrid& grid) { return FitsTables(in, grid); };
+  input.n_blocks = [&in](const BlockGrid& grid) { return BlocksWithPoints(in, grid); };
+  // Heights that were given one per block do not fit grids of other sizes.
+  input.least_share = [&in](const BlockGrid& grid) { return in.options.altitudes.empty() ? LeastShare(BlocksOf(in, grid)) : 1.0; };
+  input.training_pixels = TrainingPixels(in.survey, in.image_width);
+  input.pixels_per_block = kViewsOfVoxel * in.options.voxel_per_gsd * in.options.voxel_per_gsd * MostVoxels(in.options);
+  input.block_steps = block_steps;
+  return ChooseGrid(input);
+}
+
 // The exact bytes of the numbers, so that any change of the survey that could move a block changes the hash.
 void Append(std::string& bytes, const double* values, Eigen::Index count) {
   bytes.append(reinterpret_cast<const char*>(values), static_cast<size_t>(count) * sizeof(double));
 }
 
-std::string ConfigHash(const survey::Survey& survey, PartitionOptions options, int image_width) {
+std::string ConfigHash(const Inputs& in, const BlockGrid& grid) {
+  PartitionOptions options = in.options;
   config::Sections sections;
   sections.Add("partition", options, "");
-  std::string bytes = config::Hash(config::Flatten(sections)) + " " + std::to_string(image_width) + " ";
+  const survey::Survey& survey = in.survey;
+  std::string bytes = config::Hash(config::Flatten(sections)) + " " + std::to_string(in.image_width) + " " + std::to_string(grid.rows()) + "x" +
+                      std::to_string(grid.columns()) + " ";
   const double origin[3] = {survey.origin.latitude_deg, survey.origin.longitude_deg, survey.origin.height_m};
   Append(bytes, origin, 3);
   for (const camera::Camera& camera : survey.cameras) {
@@ -176,22 +221,25 @@ std::string ConfigHash(const survey::Survey& survey, PartitionOptions options, i
     Append(bytes, photo.cam_from_enu.translation.data(), 3);
   }
   for (const survey::SparsePoint& point : survey.points) Append(bytes, point.x_in_enu.data(), 3);
+  for (const SeenPoint& point : in.seen) Append(bytes, &point.gsd_m, 1);
   return base::HashHex(bytes);
 }
 
 }  // namespace
 
-BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& options, int image_width) {
+BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& options, int image_width, double block_steps) {
   options.Check();
   if (image_width < 0)
     throw base::UsageError("image width = " + std::to_string(image_width) + " is not allowed: it must be positive, or 0 for full size");
   const BlockRequest request = ParseBlockRequest(options.blocks);
   if (request.kind == BlockRequestKind::kCount) CheckAltitudeCount(options, request.rows, request.columns);
 
-  Inputs in{survey, options, image_width, ReliablePoints(survey), {}, {}};
+  Inputs in{survey, options, image_width, ReliablePoints(survey), {}, {}, {}};
   in.area = FindSurveyArea(survey, in.points, options.area, options.min_views);
   in.altitudes = TrainingAltitudes(survey, 0.5 * (in.area.min_enu + in.area.max_enu), in.area.ground_m);
-  const BlockGrid grid = MakeGrid(in);
+  in.seen = SeenPoints(survey, image_width);
+  AutoGrid chosen = MakeGrid(in, request, block_steps);
+  const BlockGrid& grid = chosen.grid;
   CheckAltitudeCount(options, grid.rows(), grid.columns());
 
   BlockSet set;
@@ -202,17 +250,10 @@ BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& option
   set.rows = grid.rows();
   set.columns = grid.columns();
   set.image_width = image_width;
-  set.config_hash = ConfigHash(survey, options, image_width);
-  for (int index = 0; index < set.rows * set.columns; ++index) set.blocks.push_back(MakeBlock(in, grid, index));
-  if (options.heights == "survey") UseCommonHeights(set.blocks);
-  std::vector<Box> boxes;
-  for (const Block& block : set.blocks) boxes.push_back({block.TrainMin(), block.TrainMax()});
-  std::vector<BoxVisibility> views = FindVisibility(survey, boxes, image_width);
-  for (size_t i = 0; i < set.blocks.size(); ++i) {
-    Block& block = set.blocks[i];
-    AddViews(block, std::move(views[i]), VoxelsOf(in, grid, block.id, block.finest_voxel_m), options);
-  }
-  ScaleCosts(set.blocks);
+  set.config_hash = ConfigHash(in, grid);
+  set.blocks = BlocksOf(in, grid);
+  set.number_reason = std::move(chosen.reason);
+  set.area_is_that_of_points = in.area.by_points && options.area == "covered";
   if (std::all_of(set.blocks.begin(), set.blocks.end(), [](const Block& block) { return block.empty; })) {
     throw base::InputError(survey.photo_root.empty() ? "survey" : survey.photo_root,
                            "every block is empty (" + set.blocks.front().name + ": " + set.blocks.front().empty_reason + ")",

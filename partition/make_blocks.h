@@ -1,6 +1,8 @@
 // Divides a survey into blocks: finds the area, makes the grid, and computes every block's height, table size, photos and cost.
 #pragma once
 
+#include <limits>
+
 #include "core/survey/survey.h"
 #include "partition/block.h"
 #include "partition/partition_options.h"
@@ -11,8 +13,10 @@ namespace skyquilt::partition {
 // Block::cost is the geometric mean of training pixels (what the block must explain) and surface voxels of the finest level (what it must store),
 // scaled so that all blocks sum to 1.
 //   image_width  training width in pixels, 0 = full size
+//   block_steps  optimiser steps that all blocks together get in the time there is (auto_grid.h); infinite: time limits nothing
 // Deterministic. Throws base::UsageError for options that cannot be used (see PartitionOptions::Check; also when the number of altitudes is not the
 // number of blocks) and base::InputError when the survey has no area or every block is empty.
-BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& options, int image_width);
+BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& options, int image_width,
+                    double block_steps = std::numeric_limits<double>::infinity());
 
 }  // namespace skyquilt::partition

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/errors.h"
 #include "core/base/order_statistics.h"
 #include "core/camera/photo_visibility.h"
+#include "core/survey/seen_distance.h"
 
 namespace skyquilt::partition {
 namespace {
@@ -32,13 +34,19 @@ std::vector<int> CountViews(const survey::Survey& survey, const SurveyArea& area
     }
   }
   std::vector<int> views(centres.size(), 0);
-  for (const survey::Photo& photo : survey.photos) {
+  const std::vector<std::optional<survey::SeenDistance>> seen = survey::DistancesOfLevelPhotos(survey);
+  for (size_t p = 0; p < survey.photos.size(); ++p) {
+    const survey::Photo& photo = survey.photos[p];
     if (photo.is_test) continue;
     const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
     const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
     const double agl = eye.z() - ground.At(eye.x(), eye.y());
     camera::VisibilityRule rule{.far_edges = true};
-    if (agl > 0.0) rule.reach_m = kMaxSlantPerAgl * agl;
+    if (seen[p]) {
+      rule.reach_m = seen[p]->far_m;
+    } else if (agl > 0.0) {
+      rule.reach_m = kMaxSlantPerAgl * agl;
+    }
     for (size_t i = 0; i < centres.size(); ++i) {
       if (camera::IsVisible(camera, photo.cam_from_enu, centres[i], rule)) ++views[i];
     }
@@ -146,7 +154,8 @@ SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen:
     y_covered.push_back(static_cast<double>(i / static_cast<size_t>(area.raster_columns)));
   }
   if (x_covered.empty()) {
-    // No photo sees the ground at its estimated height: use the bounds of the points.
+    // No photo sees the ground at its estimated height.
+    area.by_points = true;
     std::fill(area.covered.begin(), area.covered.end(), char{1});
     return area;
   }

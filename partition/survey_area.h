@@ -37,14 +37,15 @@ struct SurveyArea {
   int raster_columns = 0;
   int raster_rows = 0;
   std::vector<char> covered;  // 1 where enough training photos see the ground
+  bool by_points = false;     // they see none of it: the rectangle is that of the points, and all of it counts as covered
 
   // Covered ground inside a rectangle, square metres. Cells partly inside count with that part.
   double CoveredArea(const Eigen::Vector2d& low, const Eigen::Vector2d& high) const;
 };
 
 // `rule`: "covered" or "points" (see PartitionOptions::area). A photo sees a piece of ground when it projects into the image and is no farther away
-// than three times the flying height; beyond that, oblique views are too coarse.
-// Throws base::InputError when there are fewer than two training photos or four usable points, or when the points have no extent.
+// than three times the flying height; beyond that, oblique views are too coarse. A photo that looks level reaches as far as 95 % of the points that
+// it observed. Throws base::InputError when there are fewer than two training photos or four usable points, or when the points have no extent.
 SurveyArea FindSurveyArea(const survey::Survey& survey, const std::vector<Eigen::Vector3d>& points, const std::string& rule, int min_views);
 
 }  // namespace skyquilt::partition

@@ -10,6 +10,11 @@ namespace {
 constexpr int kRaysAcross = 16;
 constexpr int kRaysDown = 12;
 
+double PixelsOf(const camera::Camera& camera, int image_width) {
+  const double scale = image_width > 0 ? std::min(1.0, static_cast<double>(image_width) / camera.width) : 1.0;
+  return scale * scale * camera.width * camera.height;
+}
+
 struct RayGrid {
   std::vector<Eigen::Vector3d> direction_in_cam;
   std::vector<double> share;  // of the image that each ray stands for; sums to 1
@@ -59,6 +64,14 @@ double ShareByProjection(const camera::Camera& camera, const survey::Photo& phot
 
 }  // namespace
 
+double TrainingPixels(const survey::Survey& survey, int image_width) {
+  double pixels = 0.0;
+  for (const survey::Photo& photo : survey.photos) {
+    if (!photo.is_test) pixels += PixelsOf(survey.cameras.at(static_cast<size_t>(photo.camera)), image_width);
+  }
+  return pixels;
+}
+
 std::vector<BoxVisibility> FindVisibility(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width) {
   std::vector<RayGrid> grids;
   for (const camera::Camera& camera : survey.cameras) grids.push_back(MakeRayGrid(camera));
@@ -72,8 +85,7 @@ std::vector<BoxVisibility> FindVisibility(const survey::Survey& survey, const st
     std::vector<Eigen::Vector3d> direction;
     direction.reserve(grid.direction_in_cam.size());
     for (const Eigen::Vector3d& in_cam : grid.direction_in_cam) direction.emplace_back(photo.cam_from_enu.rotation.conjugate() * in_cam);
-    const double scale = image_width > 0 ? std::min(1.0, static_cast<double>(image_width) / camera.width) : 1.0;
-    const double pixels = scale * scale * camera.width * camera.height;
+    const double pixels = PixelsOf(camera, image_width);
     for (size_t b = 0; b < boxes.size(); ++b) {
       double share = ShareByRays(grid, direction, eye, boxes[b]);
       if (share == 0.0) share = ShareByProjection(camera, photo, boxes[b]);

@@ -18,6 +18,9 @@ struct BoxVisibility {
   double training_pixels = 0.0;  // pixels of these photos whose ray hits the box, at the training size
 };
 
+// Pixels of all training photos at the training width (0 = full size).
+double TrainingPixels(const survey::Survey& survey, int image_width);
+
 // Pixels are estimated with 16 x 12 rays per photo, image borders included (trapezoid rule). A box that none of these rays hits is projected
 // instead and counts with the rectangle around its corners. image_width: training width in pixels, 0 = full size. Result in the order of `boxes`.
 std::vector<BoxVisibility> FindVisibility(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width);

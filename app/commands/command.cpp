@@ -171,8 +171,12 @@ void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
       "memory limit per machine, such as 2GiB or 1500MB; default: half of the machine's memory [run.memory_gb]");
 }
 
-void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
+void AddTimeBudgetFlag(CLI::App& command, const Overrides& overrides) {
   AddDurationFlag(command, overrides, "--time-budget", {"run.time_budget_s"}, "time for the whole training, such as 90s, 10min or 1h30m");
+}
+
+void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
+  AddTimeBudgetFlag(command, overrides);
   AddOptionFlag(command, overrides, "--steps", "train.steps", "train every block for this many steps instead of a time budget");
   AddDurationFlag(command, overrides, "--checkpoint-every", {"context.checkpoint_every_s", "train.checkpoint_every_s"},
                   "time between two checkpoints of a field, such as 20s or 5min");

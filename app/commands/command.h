@@ -55,6 +55,8 @@ void AddControlFlags(CLI::App& command, const Overrides& overrides);
 void AddBoundaryFlag(CLI::App& command, const Overrides& overrides);
 // --memory.
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides);
+// --time-budget alone, for partition, which makes no more blocks than can be trained in it.
+void AddTimeBudgetFlag(CLI::App& command, const Overrides& overrides);
 // --time-budget, --steps, --checkpoint-every, --memory, --seed, --brightness.
 void AddTrainingFlags(CLI::App& command, const Overrides& overrides);
 // The project's config.toml; empty when it does not exist yet.

@@ -18,10 +18,12 @@ void AddPartition(CLI::App& app, CommandState& state) {
                 "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
   AddOptionFlag(*command, overrides, "--image-width", "run.image_width",
                 "scale photos down to this width in pixels for training and scoring; 0: full size");
+  AddTimeBudgetFlag(*command, overrides);
   command->add_flag("--restart", flags->restart, "remove the blocks and everything made from them first");
   command->footer(
       "Examples:\n"
       "  skyquilt partition out\n"
+      "  skyquilt partition out --time-budget 10min\n"
       "  skyquilt partition out --blocks 2x2\n"
       "  skyquilt partition out --blocks 2x2 --altitudes 150,150,300,500\n"
       "Writes out/blocks.geojson, which opens in QGIS.");

@@ -2,6 +2,7 @@
 
 #include "coordinator/poses/rank_tasks.h"
 #include "coordinator/rendering/scene_session.h"
+#include "coordinator/scheduler/expected_steps.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/train_all.h"
 #include "coordinator/stages/first_picture.h"
@@ -24,14 +25,17 @@ namespace skyquilt::coordinator {
 namespace {
 
 void LogBlocks(const partition::BlockSet& blocks) {
-  base::LogInfo("{} x {} blocks (rows x columns)", blocks.rows, blocks.columns);
+  if (blocks.area_is_that_of_points) {
+    base::LogWarning("photos see no ground at the height of the sparse points: blocks divide the rectangle around the points instead");
+  }
+  base::LogInfo("{} x {} blocks (rows x columns): {}", blocks.rows, blocks.columns, blocks.number_reason);
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) {
       base::LogInfo("  {}: empty ({})", block.name, block.empty_reason);
     } else {
       const Eigen::Vector3d size = block.max_enu - block.min_enu;
-      base::LogInfo("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.0f} m above ground, GSD {:.3f} m, 2^{} table entries per level",
-                    block.name, size.x(), size.y(), size.z(), block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
+      base::LogInfo("  {}: {:.0f} x {:.0f} m, {:.1f} m high, {} photos from {:.1f} m, GSD {:.3f} m, 2^{} table entries per level", block.name,
+                    size.x(), size.y(), size.z(), block.photos.size(), block.altitude_agl_m, block.gsd_m, block.log2_table_size);
       if (const std::string doubt = partition::AltitudeDoubt(block); !doubt.empty()) base::LogWarning("  {}: {}", block.name, doubt);
     }
   }
@@ -67,7 +71,8 @@ std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 
 std::string PartitionBody(Pipeline& pipeline, const StageStamp& stamp) {
   const survey::Survey survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
-  partition::BlockSet blocks = partition::MakeBlocks(survey, pipeline.settings.partition, pipeline.settings.run.image_width);
+  const double block_steps = ExpectedBlockSteps(pipeline.settings, pipeline.comm.size(), pipeline.comm.local_size());
+  partition::BlockSet blocks = partition::MakeBlocks(survey, pipeline.settings.partition, pipeline.settings.run.image_width, block_steps);
   if (blocks.config_hash.empty()) blocks.config_hash = stamp.Hash();
   partition::SaveBlocks(blocks, pipeline.project.BlocksFile());
   LogBlocks(blocks);

@@ -7,6 +7,7 @@
 
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
+#include "core/survey/seen_distance.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -114,8 +115,9 @@ PhotoPlaces PlacesOfPhotos(const SurfaceInput& input) {
   for (const camera::Camera& camera : survey.cameras) rectangles.push_back(InnerRectangle(camera));
 
   PhotoPlaces places;
-  std::vector<double> heights;
+  std::vector<double> distances;
   const double median_agl_m = MedianAgl(survey);
+  const std::vector<std::optional<survey::SeenDistance>> seen = survey::DistancesOfLevelPhotos(survey);
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const survey::Photo& photo = survey.photos[i];
     if (photo.is_test) continue;
@@ -125,13 +127,13 @@ PhotoPlaces PlacesOfPhotos(const SurfaceInput& input) {
       continue;
     }
     const TangentRectangle& rectangle = *rectangles[camera];
-    const double agl_m = HeightAboveGround(photo, median_agl_m, *input.info);
-    const double focal = FocalOf(rectangle, survey.cameras[camera], agl_m / (input.options.view_gsd * input.info->gsd_m));
+    const double distance_m = seen[i] ? seen[i]->median_m : HeightAboveGround(photo, median_agl_m, *input.info);
+    const double focal = FocalOf(rectangle, survey.cameras[camera], distance_m / (input.options.view_gsd * input.info->gsd_m));
     places.training.push_back(PinholeOf(rectangle, WithinLimits(rectangle, focal), photo.cam_from_enu));
     places.training.back().photo = static_cast<int>(i);
-    heights.push_back(agl_m);
+    distances.push_back(distance_m);
   }
-  if (!heights.empty()) places.agl_m = base::UpperMedian(heights);
+  if (!distances.empty()) places.agl_m = base::UpperMedian(distances);
   return places;
 }
 

@@ -30,11 +30,12 @@ constexpr double kMaxViewPixels = 4e6;
 
 struct PhotoPlaces {
   std::vector<ViewPose> training;  // of the photos that are not held out, in the order of the survey
-  double agl_m = 0.0;              // median height of these photos above ground; 0 without any
+  double agl_m = 0.0;              // median height of these photos above ground, or of level ones their distance to what they show; 0 without any
 };
 
 // A pixel is options.view_gsd ground sampling distances wide at the photo's height above ground (where it is unknown, the median of the training
-// photos), but never finer than the photo's own. Photos whose camera cannot be used are left out with a warning.
+// photos), of photos that look level at their median distance to the sparse points that they observed, but never finer than the photo's own. Photos
+// whose camera cannot be used are left out with a warning.
 PhotoPlaces PlacesOfPhotos(const SurfaceInput& input);
 
 }  // namespace skyquilt::surface

@@ -8,7 +8,8 @@
 
 #include "core/base/errors.h"
 #include "partition/altitude.h"
-#include "tests/partition/flown_survey.h"
+#include "partition/survey_area.h"
+#include "tests/partition/facade_survey.h"
 
 namespace skyquilt::partition {
 namespace {
@@ -264,6 +265,115 @@ TEST(MakeBlocks, AutoSplitsUntilTablesFit) {
   options.max_log2_table_size = 15;
   const BlockSet several = MakeBlocks(FlySurvey({}), options, 400);
   EXPECT_GT(several.blocks.size(), 2U);
+}
+
+// Twelve photos at eye level: the size of a pixel follows from the distance to the wall, and their pixels train two blocks. By the height above
+// ground voxels would be seven times as fine, and the surface would fill hundreds of blocks.
+TEST(MakeBlocks, AFacadeIsSeenFromItsDistanceAndHasFewBlocks) {
+  const survey::Survey survey = FacadeSurvey();
+  const BlockSet set = MakeBlocks(survey, PartitionOptions(), 0);
+  EXPECT_LE(set.blocks.size(), 2U);
+  EXPECT_NE(set.number_reason.find("pixels can train"), std::string::npos) << set.number_reason;
+  EXPECT_FALSE(set.area_is_that_of_points);
+  for (const Block& block : set.blocks) {
+    EXPECT_FALSE(block.empty) << block.empty_reason;
+    EXPECT_NEAR(block.gsd_m, kFromWall_m / kFacadeFocal_px, 0.05 * kFromWall_m / kFacadeFocal_px);
+    EXPECT_NEAR(block.altitude_agl_m, kFromWall_m, 0.1 * kFromWall_m);
+    EXPECT_EQ(AltitudeDoubt(block), "");
+  }
+  // The whole wall.
+  EXPECT_LT(set.blocks.front().min_enu.x(), 3.0);
+  EXPECT_GT(set.blocks.back().max_enu.x(), 46.0);
+  EXPECT_LT(set.blocks.front().min_enu.y(), kFromWall_m);
+  EXPECT_GT(set.blocks.front().max_enu.y(), kFromWall_m);
+  EXPECT_EQ(MakeBlocks(survey, PartitionOptions(), 0, 2000.0).blocks.size(), 1U) << "steps for one block";
+}
+
+TEST(MakeBlocks, SurveysThatLookDownKeepTheirBlocks) {
+  survey::Survey by_height = FlySurvey({}), by_points = by_height;
+  ObserveAll(&by_points);
+  PartitionOptions options;
+  for (const int log2 : {13, 15, 17}) {
+    options.max_log2_table_size = options.min_log2_table_size = log2;
+    for (const int width : {0, 400, 200}) {
+      const BlockSet a = MakeBlocks(by_height, options, width), b = MakeBlocks(by_points, options, width);
+      EXPECT_EQ(b.rows, a.rows);
+      EXPECT_EQ(b.columns, a.columns);
+      EXPECT_EQ(b.number_reason, "as few as hold the surface in their tables") << b.rows << " x " << b.columns;
+      for (size_t i = 0; i < a.blocks.size(); ++i) {
+        EXPECT_NEAR(b.blocks[i].gsd_m, a.blocks[i].gsd_m, 0.01 * a.blocks[i].gsd_m);
+        EXPECT_EQ(b.blocks[i].altitude_agl_m, a.blocks[i].altitude_agl_m);
+      }
+    }
+  }
+}
+
+// Where obliques are rare, the photos that look down decide; where all are oblique, the ground is farther away than the flight is high.
+TEST(MakeBlocks, ObliquePhotosAreFartherFromTheGroundThanHigh) {
+  survey::Survey survey = FlySurvey({});
+  const auto tilt = [&survey](size_t every) {
+    for (size_t i = 0; i < survey.photos.size(); i += every) {
+      survey::Photo& photo = survey.photos[i];
+      const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource();
+      photo.cam_from_enu.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(-0.785398, Eigen::Vector3d::UnitX())) * photo.cam_from_enu.rotation;
+      photo.cam_from_enu.translation = -(photo.cam_from_enu.rotation * eye);
+    }
+    ObserveAll(&survey);
+    return MakeBlocks(survey, Request("1x1"), 0).blocks[0].gsd_m * 700.0;
+  };
+  EXPECT_NEAR(tilt(5), 100.0, 3.0);
+  survey = FlySurvey({});
+  const double all_m = tilt(1);
+  EXPECT_GT(all_m, 115.0);
+  EXPECT_LT(all_m, 160.0);
+}
+
+TEST(MakeBlocks, ATimeBudgetLimitsTheBlocks) {
+  PartitionOptions options = Request("auto");
+  options.max_log2_table_size = 15;
+  const auto with = [&options](double steps) { return MakeBlocks(FlySurvey({}), options, 400, steps); };
+  const BlockSet unlimited = MakeBlocks(FlySurvey({}), options, 400);
+  EXPECT_GT(unlimited.blocks.size(), 4U);
+  EXPECT_NE(unlimited.number_reason.find("as few as"), std::string::npos) << unlimited.number_reason;
+  EXPECT_EQ(with(1e7).blocks.size(), unlimited.blocks.size());
+  // Three minutes on two threads (ExpectedBlockSteps).
+  const BlockSet short_time = with(7470.0);
+  EXPECT_LE(short_time.blocks.size(), 4U);
+  EXPECT_NE(short_time.number_reason.find("time budget can train"), std::string::npos) << short_time.number_reason;
+  for (const Block& block : short_time.blocks) EXPECT_GE(block.cost * 7470.0, 500.0);
+  size_t last = 1;
+  for (const double steps : {0.0, 1000.0, 3500.0, 7470.0, 10000.0, 15000.0, 1e5}) {
+    const BlockSet set = with(steps);
+    EXPECT_GE(set.blocks.size(), last) << steps;
+    last = set.blocks.size();
+  }
+  options.blocks = "3x3";
+  EXPECT_EQ(with(100.0).blocks.size(), 9U);
+  EXPECT_EQ(with(100.0).number_reason, "as asked for");
+}
+
+// Photos that look level away from all points show no ground.
+TEST(FindSurveyArea, SaysWhereItIsThatOfThePoints) {
+  survey::Survey survey = FacadeSurvey();
+  EXPECT_FALSE(FindSurveyArea(survey, ReliablePoints(survey), "covered", 2).by_points);
+  for (survey::Photo& photo : survey.photos) {
+    const Eigen::Vector3d eye = photo.cam_from_enu.OriginInSource() - Eigen::Vector3d(0.0, 100.0, 0.0);
+    photo.cam_from_enu.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(3.14159265, Eigen::Vector3d::UnitY())) * photo.cam_from_enu.rotation;
+    MoveTo(eye, photo);
+  }
+  const SurveyArea area = FindSurveyArea(survey, ReliablePoints(survey), "covered", 2);
+  EXPECT_TRUE(area.by_points);
+  EXPECT_GT(area.max_enu.x() - area.min_enu.x(), 45.0);
+}
+
+// Three times their height of 1.6 m reaches nothing of what they show.
+TEST(FindSurveyArea, LevelPhotosReachWhatTheySee) {
+  survey::Survey survey = FacadeSurvey();
+  const SurveyArea area = FindSurveyArea(survey, ReliablePoints(survey), "points", 2);
+  EXPECT_FALSE(area.by_points);
+  EXPECT_NEAR(area.CoveredArea({15.0, kFromWall_m - 0.3}, {30.0, kFromWall_m + 0.3}), 15.0 * 0.6, 1e-6);
+  survey.tracks = {};
+  EXPECT_TRUE(FindSurveyArea(survey, ReliablePoints(survey), "points", 2).by_points);
 }
 
 TEST(MakeBlocks, VoxelsThatShareEntriesMakeTablesSmaller) {

@@ -91,6 +91,26 @@ TEST(PlacesOfPhotos, PixelsFollowTheHeightAboveGround) {
   EXPECT_EQ(places.training[0].height, 75);
 }
 
+// Their height says nothing of what they show.
+TEST(PlacesOfPhotos, PixelsOfLevelPhotosFollowTheDistanceToTheirPoints) {
+  TemporaryFolder folder;
+  AnalyticSurvey s(folder.path());
+  s.AddPhoto(0, 0);
+  s.survey.photos[0].cam_from_enu.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitX()));
+  s.survey.photos[0].cam_from_enu.translation = {0.0, 1.6, 0.0};  // 1.6 m above the ground
+  s.survey.photos[0].agl_m = 1.6;
+  for (int i = 0; i < 21; ++i) {
+    survey::SparsePoint point;
+    point.x_in_enu = {0.2 * i, 14.0 + 0.1 * i, 2.0};
+    s.survey.points.push_back(point);
+    s.survey.tracks.Add({0});
+  }
+  s.info.gsd_m = 0.1;
+  const PhotoPlaces places = PlacesOfPhotos(s.input);
+  EXPECT_NEAR(places.training[0].focal_px, 15.0 / (2.0 * 0.1), 1e-6);
+  EXPECT_NEAR(places.agl_m, 15.0, 1e-9);
+}
+
 TEST(PlacesOfPhotos, NeverFinerThanThePhotoNorTooSmallNorTooLarge) {
   TemporaryFolder folder;
   AnalyticSurvey s(folder.path());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -36,12 +37,40 @@ std::vector<Splat> SplatsOf(const RaySource& source, const scene::HeightMap& poi
   return splats;
 }
 
+// [elevation][azimuth][channel] of the sky in the training photos; empty when they show none.
+std::vector<float> SkyOf(const RaySource& source, const survey::Survey& survey, const PointRanges& ranges) {
+  using scene::Background;
+  const base::GridShape shape{Background::kSkyColumns, Background::kSkyRows};
+  std::vector<double> sum(3 * shape.size(), 0.0), count(shape.size(), 0.0);
+  for (size_t photo = 0; photo < survey.photos.size(); ++photo) {
+    if (survey.photos[photo].is_test) continue;
+    const std::vector<Eigen::Vector3f> colors = source.TileColors(static_cast<int>(photo));
+    for (const Tile& tile : TrainingTiles(survey, {static_cast<int>(photo)})) {
+      const Eigen::Vector3f& srgb = colors[static_cast<size_t>(tile.row) * kTileColumns + static_cast<size_t>(tile.column)];
+      if (!ranges.Of(tile).sky || !srgb.allFinite()) continue;
+      Eigen::Vector3d origin, direction;
+      source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
+      const double azimuth = std::atan2(direction.y(), direction.x()) / (2.0 * std::numbers::pi);
+      const double elevation = std::atan2(direction.z(), direction.head<2>().norm()) / (0.5 * std::numbers::pi);
+      const auto along = [](double share, int n) { return std::clamp(static_cast<int>(share * n), 0, n - 1); };
+      const size_t cell = shape.Index(along(azimuth - std::floor(azimuth), shape.columns), along(elevation, shape.rows));
+      for (size_t c = 0; c < 3; ++c) sum[3 * cell + c] += static_cast<double>(srgb[static_cast<Eigen::Index>(c)]);
+      count[cell] += 1.0;
+    }
+  }
+  if (std::ranges::none_of(count, [](double n) { return n > 0.0; })) return {};
+  for (size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(1.0, count[i / 3]);
+  scene::FillFromSurroundings(shape, 3, &sum, std::move(count));
+  return {sum.begin(), sum.end()};
+}
+
 }  // namespace
 
-scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, uint64_t seed,
-                                 base::ThreadPool& threads) {
+scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, const PointRanges& ranges,
+                                 uint64_t seed, base::ThreadPool& threads) {
   scene::Background background;
   background.mean_srgb = source.MeanColor(seed);
+  if (!ranges.Empty()) background.sky_srgb = SkyOf(source, survey, ranges);
   if (points.Empty()) return background;
   std::vector<std::vector<Splat>> of_photos(survey.photos.size());
   threads.ParallelFor(static_cast<int64_t>(of_photos.size()), [&](int64_t photo, int) {

@@ -4,12 +4,14 @@
 #include "core/scene/background.h"
 #include "core/survey/survey.h"
 #include "worker/rays/ray_source.h"
+#include "worker/start/point_ranges.h"
 
 namespace skyquilt::worker {
 
 // Projects the mean colours of the training photos' tiles onto `points`, the height map of the sparse points, blurs them over about three tiles (the
 // heights are not more accurate), and interpolates where no photo sees the ground. When the height map is empty, only the mean colour is set.
-scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, uint64_t seed,
-                                 base::ThreadPool& threads);
+// Where photos look level, the mean colours of the tiles that show sky become a sky by direction, interpolated where no photo shows it.
+scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, const PointRanges& ranges,
+                                 uint64_t seed, base::ThreadPool& threads);
 
 }  // namespace skyquilt::worker

@@ -11,6 +11,7 @@
 #include "worker/block_session.h"
 #include "worker/field_trainer.h"
 #include "worker/make_background.h"
+#include "worker/start/point_ranges.h"
 #include "worker/start/point_surface.h"
 #include "worker/start/starting_occupancy.h"
 #include "worker/start/surface_interval.h"
@@ -101,7 +102,9 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   const ContextBrightness extras{&response, &learner};
   RaySource source(*job.survey, *job.pixels, response);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
-  source.SetTiles(TilesWithEnoughViews(source, *job.survey, area.photos, surface, job.min_views, threads), {}, 0.0);
+  const PointRanges ranges(*job.survey, source, area.photos, threads);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, area.photos, surface, ranges, job.min_views, threads);
+  source.SetTiles(tiles, {}, 0.0);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo sees the survey area; check the poses in the survey";
@@ -118,11 +121,13 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
     saved.reset();
   } else {
     trainer.InitializeParameters();
-    MarkUnseen(source, *job.survey, area.photos, surface, job.min_views, target, threads);
+    MarkUnseen(source, *job.survey, area.photos, surface, ranges, job.min_views, target, threads);
     if (SearchesEverywhere(job.options)) {
       StartEverywhere(target);
-    } else {
+    } else if (ranges.Empty()) {
       StartFromPoints(*job.survey, target);
+    } else {
+      StartFromRanges(source, ranges, tiles, target);
     }
     trainer.MeasureFootprints();
   }
@@ -131,7 +136,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   if (!loop.Run()) return loop.Failure();
   if (job.learn.Gains()) brightness::PredictGains(brightness::CapturedPhotos(*job.survey), response);
   const ContextResults findings{SurfaceIntervals(source, *job.survey, target, threads),
-                                MakeBackground(source, *job.survey, surface, job.seed, threads)};
+                                MakeBackground(source, *job.survey, surface, ranges, job.seed, threads)};
   return loop.SaveResult(&findings);
 }
 
@@ -160,8 +165,9 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
   render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false, prior_options);
   RaySource source(*job.survey, *job.pixels, loaded.response);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
-  const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, block.photos, surface, job.min_views, threads);
-  ChooseTiles(*job.survey, tiles, target, context, job.options.empty_ray_share, source, threads);
+  const PointRanges ranges(*job.survey, source, block.photos, threads);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, block.photos, surface, ranges, job.min_views, threads);
+  ChooseTiles(*job.survey, tiles, target, context, ranges, job.options.empty_ray_share, source, threads);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo shows a surface inside block " + block.name;
@@ -180,11 +186,15 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
     saved.reset();
   } else {
     trainer.InitializeParameters();
-    MarkUnseen(source, *job.survey, block.photos, surface, job.min_views, target, threads);
+    MarkUnseen(source, *job.survey, block.photos, surface, ranges, job.min_views, target, threads);
     if (SearchesEverywhere(job.options)) {
       StartEverywhere(target);
     } else {
-      StartFromPoints(*job.survey, target);
+      if (ranges.Empty()) {
+        StartFromPoints(*job.survey, target);
+      } else {
+        StartFromRanges(source, ranges, tiles, target);
+      }
       if (context != nullptr) StartFromSurfaces(source, *job.survey, tiles, *context, target);
     }
     trainer.MeasureFootprints();

@@ -1,5 +1,8 @@
 #include "core/scene/background.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "core/base/errors.h"
@@ -10,10 +13,28 @@ namespace {
 constexpr const char* kMean[3] = {"background_r", "background_g", "background_b"};
 constexpr const char* kHeights = "background/heights";
 constexpr const char* kColors = "background/colors";
+constexpr const char* kSky = "background/sky";
+
+// Between the centres of the sky's cells.
+std::array<float, 3> SkyColor(const std::vector<float>& sky_srgb, const Eigen::Vector3d& direction) {
+  const double elevation = std::atan2(direction.z(), direction.head<2>().norm()) / (0.5 * std::numbers::pi);
+  const double azimuth = std::atan2(direction.y(), direction.x()) / (2.0 * std::numbers::pi);
+  const double v = std::clamp(elevation * Background::kSkyRows - 0.5, 0.0, Background::kSkyRows - 1.0);
+  const double u = (azimuth - std::floor(azimuth)) * Background::kSkyColumns + Background::kSkyColumns - 0.5;
+  const int row = std::min(static_cast<int>(v), Background::kSkyRows - 2), column = static_cast<int>(u);
+  std::array<float, 3> rgb = {0.0F, 0.0F, 0.0F};
+  for (int i = 0; i < 4; ++i) {
+    const double along_v = i / 2 == 0 ? 1.0 - (v - row) : v - row, along_u = i % 2 == 0 ? 1.0 - (u - column) : u - column;
+    const int cell = (row + i / 2) * Background::kSkyColumns + (column + i % 2) % Background::kSkyColumns;
+    for (int c = 0; c < 3; ++c) rgb[static_cast<size_t>(c)] += static_cast<float>(along_v * along_u) * sky_srgb[static_cast<size_t>(3 * cell + c)];
+  }
+  return rgb;
+}
 
 }  // namespace
 
 std::array<float, 3> Background::Color(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu) const {
+  if (direction_enu.z() > 0.0 && !sky_srgb.empty()) return SkyColor(sky_srgb, direction_enu);
   Eigen::Vector3d x;
   if (!surface.Intersect(origin_enu, direction_enu, &x)) return mean_srgb;
   const HeightMap::Corners corners = surface.Around(x.x(), x.y());
@@ -26,6 +47,7 @@ std::array<float, 3> Background::Color(const Eigen::Vector3d& origin_enu, const 
 
 void PutBackground(const Background& background, checkpoint::ArchiveWriter& writer) {
   for (size_t c = 0; c < 3; ++c) writer.SetAttribute(kMean[c], static_cast<double>(background.mean_srgb[c]));
+  if (!background.sky_srgb.empty()) writer.Put(kSky, background.sky_srgb, {Background::kSkyRows, Background::kSkyColumns, 3});
   if (background.surface.Empty()) return;
   const geo::PlaneGrid& grid = background.surface.grid();
   writer.SetAttribute("background_min_x", grid.origin.x());
@@ -40,8 +62,14 @@ Background GetBackground(const checkpoint::ArchiveReader& reader, const std::fil
   for (size_t c = 0; c < 3; ++c) {
     if (reader.HasAttribute(kMean[c])) background.mean_srgb[c] = static_cast<float>(reader.DoubleAttribute(kMean[c]));
   }
-  if (!reader.Has(kHeights)) return background;
   const std::string fix = "Train it again with --restart";
+  if (reader.Has(kSky)) {
+    if (reader.Shape(kSky) != std::vector<int64_t>{Background::kSkyRows, Background::kSkyColumns, 3}) {
+      throw base::InputError(file, "the background's sky has another size", fix);
+    }
+    background.sky_srgb = reader.Floats(kSky);
+  }
+  if (!reader.Has(kHeights)) return background;
   const std::vector<int64_t> shape = reader.Shape(kHeights);
   if (shape.size() != 2 || reader.Shape(kColors) != std::vector<int64_t>{shape[0], shape[1], 3}) {
     throw base::InputError(file, "heights and colours of the background have different sizes", fix);

@@ -16,8 +16,12 @@ struct Background {
   HeightMap surface;                                    // empty: the mean colour everywhere
   std::vector<float> rgb_srgb;                          // [row][column][channel] of the cells of `surface`, display values at reference exposure
   std::array<float, 3> mean_srgb = {0.0F, 0.0F, 0.0F};  // the survey's mean colour, for rays that do not meet the surface
+  // [elevation][azimuth][channel], display values at reference exposure, for rays that rise; elevations from the horizon to the zenith, azimuths from
+  // east over north all round. Empty: no photo shows sky.
+  static constexpr int kSkyRows = 9, kSkyColumns = 36;
+  std::vector<float> sky_srgb = {};
 
-  // Display values where the ray meets the surface; the mean colour when it does not.
+  // Display values where the ray meets the surface, or of the sky in its direction; the mean colour when it does neither.
   std::array<float, 3> Color(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu) const;
 };
 

@@ -19,10 +19,25 @@ constexpr double kPointsPerColumn = 4.0;
 // high or too low there harms unseen views most.
 constexpr int kGroundReach = 6;
 
+// Occupies the cells that a tile's centre ray meets between two distances, metres; an end that is not finite is that of the field.
+void OccupyAlong(const RaySource& source, const Tile& tile, double near, double far, render::TrainedField& target) {
+  field::OccupancyGrid& grid = target.occupancy;
+  Eigen::Vector3d origin, direction;
+  source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
+  const geo::Interval box = render::FieldInterval(target.map, origin, direction);
+  const double begin = std::isfinite(near) ? std::max(box.t_near, near) : box.t_near, end = std::isfinite(far) ? std::min(box.t_far, far) : box.t_far;
+  const double cell_m = static_cast<double>(grid.cell) / target.map.units_per_metre();
+  for (double t = begin; t < end; t += 0.5 * cell_m) {
+    const Eigen::Vector3f unit = target.map.UnitFromEnu(origin + t * direction);
+    const auto index = static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()));
+    if (grid.tau[index] >= 0.0F) grid.occupied[index] = 1;
+  }
+}
+
 }  // namespace
 
-void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const scene::HeightMap& surface, int min_views,
-                render::TrainedField& target, base::ThreadPool& threads) {
+void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos, const scene::HeightMap& surface,
+                const PointRanges& ranges, int min_views, render::TrainedField& target, base::ThreadPool& threads) {
   field::OccupancyGrid& grid = target.occupancy;
   const int groups[3] = {(grid.size[0] + kGroup - 1) / kGroup, (grid.size[1] + kGroup - 1) / kGroup, (grid.size[2] + kGroup - 1) / kGroup};
   const auto centre_of = [&](int gx, int gy, int gz) {
@@ -35,7 +50,7 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
   const ViewCounter counter(survey, photos, [&source](int photo) -> const camera::Camera& { return source.CameraOf(photo); });
   // Columns of groups whose ground enough photos see.
   std::vector<uint8_t> enough_views(static_cast<size_t>(groups[0]) * static_cast<size_t>(groups[1]), 1);
-  if (!surface.Empty() && min_views > 1) {
+  if (ranges.Empty() && !surface.Empty() && min_views > 1) {
     threads.ParallelFor(groups[1], [&](int64_t gy, int) {
       for (int gx = 0; gx < groups[0]; ++gx) {
         Eigen::Vector3d ground = centre_of(gx, static_cast<int>(gy), groups[2] / 2);
@@ -51,7 +66,9 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
       for (int gx = 0; gx < groups[0]; ++gx) {
         if (enough_views[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] != 0) {
           const Eigen::Vector3d centre = centre_of(gx, gy, static_cast<int>(gz));
-          if (counter.Count(centre, radius_at(centre), 1) > 0) continue;
+          const double radius = radius_at(centre);
+          const ViewCounter::Accept shows = [&](int photo) { return ranges.MayShow(photo, centre, radius); };
+          if (ranges.Empty() ? counter.Count(centre, radius, 1) > 0 : counter.Count(centre, radius, min_views, shows) >= min_views) continue;
         }
         for (int z = static_cast<int>(gz) * kGroup; z < std::min(grid.size[2], (static_cast<int>(gz) + 1) * kGroup); ++z) {
           for (int y = gy * kGroup; y < std::min(grid.size[1], (gy + 1) * kGroup); ++y) {
@@ -124,27 +141,28 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
   }
 }
 
+void StartFromRanges(const RaySource& source, const PointRanges& ranges, const std::vector<Tile>& tiles, render::TrainedField& target) {
+  field::OccupancyGrid& grid = target.occupancy;
+  std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
+  for (const Tile& tile : tiles) {
+    const PointRanges::Range& range = ranges.Of(tile);
+    if (!range.sky) OccupyAlong(source, tile, static_cast<double>(range.near), static_cast<double>(range.far), target);
+  }
+  grid.Dilate(1);  // between tile centres
+  for (size_t i = 0; i < grid.tau.size(); ++i) grid.tau[i] = grid.occupied[i] != 0 ? kStartTau : std::min(grid.tau[i], 0.0F);
+}
+
 void StartFromSurfaces(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
                        render::TrainedField& target) {
   if (!context.HasSurfaceIntervals(survey)) return;
   field::OccupancyGrid& grid = target.occupancy;
   const std::vector<uint8_t> before = grid.occupied;
   std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
-  const double cell_m = static_cast<double>(grid.cell) / target.map.units_per_metre();
   // The context's surfaces are blurred by about one of its marching steps.
   const double pad_m = context.field.step_m;
   for (const Tile& tile : tiles) {
     const SurfaceInterval& band = context.Band(tile.photo, tile.row, tile.column);
-    render::Ray ray;
-    source.RayThrough(tile.photo, source.TileCentre(tile), &ray.origin_enu, &ray.direction_enu);
-    const geo::Interval box = render::FieldInterval(target.map, ray.origin_enu, ray.direction_enu);
-    const double near = std::isfinite(band.front) ? std::max(box.t_near, static_cast<double>(band.front) - pad_m) : box.t_near;
-    const double far = std::isfinite(band.back) ? std::min(box.t_far, static_cast<double>(band.back) + pad_m) : box.t_far;
-    for (double t = near; t < far; t += 0.5 * cell_m) {
-      const Eigen::Vector3f unit = target.map.UnitFromEnu(ray.origin_enu + t * ray.direction_enu);
-      const auto index = static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()));
-      if (grid.tau[index] >= 0.0F) grid.occupied[index] = 1;
-    }
+    OccupyAlong(source, tile, static_cast<double>(band.front) - pad_m, static_cast<double>(band.back) + pad_m, target);
   }
   if (grid.OccupiedShare() <= 0.0) {
     grid.occupied = before;

@@ -66,8 +66,8 @@ struct Sight {
 // Decides about the tiles of one photo; every sight is computed once, though nine tiles ask for it.
 class TileUse {
  public:
-  TileUse(const render::TrainedField& target, const LoadedContext* context, const RaySource& source, int photo)
-      : target_(target), context_(context), source_(source), photo_(photo) {}
+  TileUse(const render::TrainedField& target, const LoadedContext* context, const PointRanges& ranges, const RaySource& source, int photo)
+      : target_(target), context_(context), ranges_(ranges), source_(source), photo_(photo) {}
 
   Use Of(const Tile& tile) {
     if (context_ == nullptr) return Interval(tile.row, tile.column, nullptr, nullptr).Empty() ? Use::kNone : Use::kInside;
@@ -101,7 +101,8 @@ class TileUse {
     const Eigen::Vector3d low = target_.map.min_enu(), high = target_.map.max_enu();
     if (!std::isfinite(depth)) {
       // The context shows no surface: inside when the ray leaves the box through its bottom.
-      sight.inside = !interval.Empty() && o.z() + interval.t_far * d.z() <= low.z() + 1e-6;
+      sight.inside = !interval.Empty() && (ranges_.Empty() ? o.z() + interval.t_far * d.z() <= low.z() + 1e-6
+                                                           : !ranges_.Of({photo_, static_cast<int16_t>(column), static_cast<int16_t>(row)}).sky);
       return sight;
     }
     const Eigen::Vector3d p = o + depth * d;
@@ -112,6 +113,7 @@ class TileUse {
 
   const render::TrainedField& target_;
   const LoadedContext* context_;
+  const PointRanges& ranges_;
   const RaySource& source_;
   const int photo_;
   std::array<Sight, static_cast<size_t>(kTileRows)* kTileColumns> sights_ = {};
@@ -120,7 +122,7 @@ class TileUse {
 }  // namespace
 
 void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, const render::TrainedField& target, const LoadedContext* context,
-                 double empty_ray_share, RaySource& source, base::ThreadPool& threads) {
+                 const PointRanges& ranges, double empty_ray_share, RaySource& source, base::ThreadPool& threads) {
   const LoadedContext* knows_depth = context != nullptr && context->HasSurfaceIntervals(survey) ? context : nullptr;
   std::vector<size_t> photo_begins;
   for (size_t i = 0; i < tiles.size(); ++i) {
@@ -130,7 +132,7 @@ void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, c
   std::vector<Use> uses(tiles.size(), Use::kNone);
   threads.ParallelFor(static_cast<int64_t>(photo_begins.size()) - 1, [&](int64_t n, int) {
     const size_t begin = photo_begins[static_cast<size_t>(n)], end = photo_begins[static_cast<size_t>(n) + 1];
-    TileUse use(target, knows_depth, source, tiles[begin].photo);
+    TileUse use(target, knows_depth, ranges, source, tiles[begin].photo);
     for (size_t i = begin; i < end; ++i) uses[i] = use.Of(tiles[i]);
   });
   std::vector<Tile> inside, empty;

@@ -11,6 +11,7 @@
 #include "core/scene/background.h"
 #include "core/survey/survey.h"
 #include "worker/rays/ray_source.h"
+#include "worker/start/point_ranges.h"
 
 namespace skyquilt::worker {
 
@@ -51,8 +52,10 @@ std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const sur
                                               base::ThreadPool& threads);
 
 // Sets the tiles from which the source draws a block's rays: those of `tiles` whose surface is inside the block's ground plan, and as empty tiles
-// those whose surface is behind the block. Without a context (null) all tiles whose centre ray crosses the block's box.
+// those whose surface is behind the block. Without a context (null) all tiles whose centre ray crosses the block's box. Tiles in which the context
+// shows no surface are inside when their ray leaves the box through its bottom, or where photos look level (`ranges` is not empty) when it crosses
+// the box and does not show sky.
 void ChooseTiles(const survey::Survey& survey, const std::vector<Tile>& tiles, const render::TrainedField& target, const LoadedContext* context,
-                 double empty_ray_share, RaySource& source, base::ThreadPool& threads);
+                 const PointRanges& ranges, double empty_ray_share, RaySource& source, base::ThreadPool& threads);
 
 }  // namespace skyquilt::worker

@@ -1,6 +1,7 @@
 #include "worker/start/view_count.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -11,7 +12,7 @@
 namespace skyquilt::worker {
 
 std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
-                                       const scene::HeightMap& surface, int min_views, base::ThreadPool& threads) {
+                                       const scene::HeightMap& surface, const PointRanges& ranges, int min_views, base::ThreadPool& threads) {
   std::vector<Tile> all = TrainingTiles(survey, photos);
   if (surface.Empty() || min_views < 2) return all;
   const ViewCounter counter(survey, photos, [&source](int photo) -> const camera::Camera& { return source.CameraOf(photo); });
@@ -27,7 +28,14 @@ std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Su
       const size_t i = begin + static_cast<size_t>(k);
       Eigen::Vector3d origin, direction, x;
       source.RayThrough(all[i].photo, source.TileCentre(all[i]), &origin, &direction);
-      enough[i] = !surface.Intersect(origin, direction, &x) || counter.Count(x, 0.0, min_views) >= min_views ? 1 : 0;
+      if (ranges.Empty()) {
+        enough[i] = !surface.Intersect(origin, direction, &x) || counter.Count(x, 0.0, min_views) >= min_views ? 1 : 0;
+        return;
+      }
+      const PointRanges::Range& range = ranges.Of(all[i]);
+      x = origin + std::sqrt(static_cast<double>(range.nearest) * static_cast<double>(range.farthest)) * direction;
+      const auto shows = [&](int photo) { return ranges.MayShow(photo, x, 0.0); };
+      enough[i] = !range.Known() || counter.Count(x, 0.0, min_views, shows) >= min_views ? 1 : 0;
     });
     if (progress) progress->Update(static_cast<double>(end));
   }

@@ -101,26 +101,26 @@ bool ViewCounter::MayShow(const Node& node, const Eigen::Vector3d& x_in_enu, dou
   return reach >= std::numbers::pi || node.axis.dot(offset) >= std::cos(reach) * distance_m;
 }
 
-void ViewCounter::Add(int index, const Eigen::Vector3d& x_in_enu, double radius_m, int enough, int* views) const {
+void ViewCounter::Add(int index, const Eigen::Vector3d& x_in_enu, double radius_m, int enough, const Accept& shows, int* views) const {
   const Node& node = nodes_[static_cast<size_t>(index)];
   if (*views >= enough || !MayShow(node, x_in_enu, radius_m)) return;
   if (node.left >= 0) {
     const auto distance = [&](int child) { return (nodes_[static_cast<size_t>(child)].centre - x_in_enu).squaredNorm(); };
     const bool left_first = distance(node.left) <= distance(node.right);
-    Add(left_first ? node.left : node.right, x_in_enu, radius_m, enough, views);
-    Add(left_first ? node.right : node.left, x_in_enu, radius_m, enough, views);
+    Add(left_first ? node.left : node.right, x_in_enu, radius_m, enough, shows, views);
+    Add(left_first ? node.right : node.left, x_in_enu, radius_m, enough, shows, views);
     return;
   }
   for (int i = node.first; i < node.last && *views < enough; ++i) {
     const int photo = photos_[static_cast<size_t>(i)];
     const geo::Rigid3d& cam_from_enu = survey_.photos[static_cast<size_t>(photo)].cam_from_enu;
-    if (camera::IsVisible(camera_of_(photo), cam_from_enu, x_in_enu, {.radius_m = radius_m})) ++*views;
+    if (camera::IsVisible(camera_of_(photo), cam_from_enu, x_in_enu, {.radius_m = radius_m}) && (!shows || shows(photo))) ++*views;
   }
 }
 
-int ViewCounter::Count(const Eigen::Vector3d& x_in_enu, double radius_m, int enough) const {
+int ViewCounter::Count(const Eigen::Vector3d& x_in_enu, double radius_m, int enough, const Accept& shows) const {
   int views = 0;
-  if (root_ >= 0) Add(root_, x_in_enu, radius_m, enough, &views);
+  if (root_ >= 0) Add(root_, x_in_enu, radius_m, enough, shows, &views);
   return views;
 }
 

@@ -18,8 +18,9 @@ class ViewCounter {
   ViewCounter(const survey::Survey& survey, const std::vector<int>& photos, CameraOf camera_of);
 
   // Number of photos whose image shows the ball of radius_m metres around x_in_enu, even partly or hidden behind surfaces, as camera::IsVisible has
-  // it. Stops counting at `enough`. Thread-safe.
-  int Count(const Eigen::Vector3d& x_in_enu, double radius_m, int enough) const;
+  // it, and that `shows` accepts, if given. Stops counting at `enough`. Thread-safe.
+  using Accept = std::function<bool(int photo)>;
+  int Count(const Eigen::Vector3d& x_in_enu, double radius_m, int enough, const Accept& shows = {}) const;
 
  private:
   struct Node {
@@ -33,7 +34,7 @@ class ViewCounter {
 
   int Build(int first, int last);
   bool MayShow(const Node& node, const Eigen::Vector3d& x_in_enu, double radius_m) const;
-  void Add(int node, const Eigen::Vector3d& x_in_enu, double radius_m, int enough, int* views) const;
+  void Add(int node, const Eigen::Vector3d& x_in_enu, double radius_m, int enough, const Accept& shows, int* views) const;
 
   const survey::Survey& survey_;
   CameraOf camera_of_;

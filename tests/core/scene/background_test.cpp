@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "core/base/errors.h"
@@ -95,6 +98,35 @@ TEST_F(BackgroundFile, BringsBackTheSameColours) {
   for (const Eigen::Vector3d& direction : {Eigen::Vector3d(0.0, 0.0, -1.0), Eigen::Vector3d(0.6, 0.0, -0.8), Eigen::Vector3d(0.0, 0.0, 1.0)}) {
     EXPECT_EQ(read.Color({7.0, 8.0, 50.0}, direction), background.Color({7.0, 8.0, 50.0}, direction));
   }
+}
+
+TEST_F(BackgroundFile, BringsBackTheSky) {
+  Background background{{}, {}, {0.25F, 0.5F, 0.75F}};
+  for (int row = 0; row < Background::kSkyRows; ++row) {
+    for (int column = 0; column < Background::kSkyColumns; ++column) {
+      const double azimuth = (column + 0.5) / Background::kSkyColumns * 2.0 * std::numbers::pi;
+      for (const double value : {0.5 + 0.4 * std::cos(azimuth), 0.5 + 0.4 * std::sin(azimuth), 0.1 * row}) {
+        background.sky_srgb.push_back(static_cast<float>(value));
+      }
+    }
+  }
+  Write(background);
+  const Background read = GetBackground(checkpoint::ArchiveReader(file_), file_);
+  EXPECT_EQ(read.sky_srgb, background.sky_srgb);
+  EXPECT_EQ(read.Color({0.0, 0.0, 9.0}, {0.0, 0.8, -0.6}), background.mean_srgb) << "below the horizon";
+  for (int i = 0; i <= 100; ++i) {
+    const double azimuth = 2.0 * std::numbers::pi * i / 100.0, elevation = 0.01 + 1.55 * i / 100.0;
+    const std::array<float, 3> rgb =
+        read.Color({0.0, 0.0, 9.0}, {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)});
+    EXPECT_NEAR(static_cast<double>(rgb[0]), 0.5 + 0.4 * std::cos(azimuth), 0.01) << i;
+    EXPECT_NEAR(static_cast<double>(rgb[1]), 0.5 + 0.4 * std::sin(azimuth), 0.01) << i;
+    EXPECT_NEAR(static_cast<double>(rgb[2]), 0.1 * std::clamp(elevation / (0.5 * std::numbers::pi) * 9.0 - 0.5, 0.0, 8.0), 0.01) << i;
+  }
+  const std::vector<float> few(9, 0.5F);
+  checkpoint::ArchiveWriter writer("scene", 1);
+  writer.Put("background/sky", few, {1, 3, 3});
+  writer.Commit(file_);
+  EXPECT_THROW(GetBackground(checkpoint::ArchiveReader(file_), file_), base::InputError);
 }
 
 TEST_F(BackgroundFile, MayHoldNoSurfaceOrNothing) {

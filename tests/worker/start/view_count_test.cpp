@@ -81,7 +81,7 @@ TEST_F(ViewCountTest, ColoursOfTilesHaveTheGainsOfNow) {
 
 TEST_F(ViewCountTest, TilesThatOtherPhotosSeeAreKept) {
   Photograph(48.0);
-  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2, threads_);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), {}, 2, threads_);
   std::set<std::pair<int, int>> columns;
   for (const Tile& tile : tiles) columns.insert({tile.photo, tile.column});
   // The second photo begins at x = 0 m, the first photo's middle.
@@ -94,14 +94,14 @@ TEST_F(ViewCountTest, TilesThatOtherPhotosSeeAreKept) {
 
 TEST_F(ViewCountTest, OneViewIsEnoughWhenAskedFor) {
   Photograph(48.0);
-  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 1, threads_).size(),
+  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), {}, 1, threads_).size(),
             static_cast<size_t>(2 * kTileColumns * kTileRows));
 }
 
 TEST_F(ViewCountTest, AHeldOutPhotoDoesNotCountAndAllTilesAreKeptWhenNoneHasEnough) {
   Photograph(48.0);
   survey_.photos[1].is_test = true;
-  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), 2, threads_);
+  const std::vector<Tile> tiles = TilesWithEnoughViews(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), {}, 2, threads_);
   EXPECT_EQ(tiles.size(), static_cast<size_t>(kTileColumns * kTileRows)) << "all tiles of the only training photo";
 }
 
@@ -109,7 +109,7 @@ TEST_F(ViewCountTest, WithoutPointsEveryTileCounts) {
   Photograph(48.0);
   survey_.points.clear();
   EXPECT_TRUE(SurfaceOfPoints(survey_).Empty());
-  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, {}, 2, threads_).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
+  EXPECT_EQ(TilesWithEnoughViews(*source_, survey_, {0, 1}, {}, {}, 2, threads_).size(), static_cast<size_t>(2 * kTileColumns * kTileRows));
 }
 
 TEST_F(ViewCountTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
@@ -121,7 +121,7 @@ TEST_F(ViewCountTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
     double extent[3];
     for (int axis = 0; axis < 3; ++axis) extent[axis] = f.map.extent()[axis];
     f.occupancy = field::OccupancyGrid::Make(extent, 0.5 * f.map.units_per_metre(), 4'000'000);
-    MarkUnseen(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), min_views, f, threads);
+    MarkUnseen(*source_, survey_, {0, 1}, SurfaceOfPoints(survey_), {}, min_views, f, threads);
     const Eigen::Vector3f unit = f.map.UnitFromEnu({x, 0.0, z});
     return f.occupancy.tau[static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] >= 0.0F;
   };
@@ -138,7 +138,7 @@ TEST_F(ViewCountTest, CellsOverGroundThatOnePhotoShowsAreNeverSeen) {
 TEST_F(ViewCountTest, TheBackgroundShowsCoarseColoursWhereOnePhotoLookedAndNearOnesWhereNoneDid) {
   Photograph(48.0);
   base::ThreadPool threads(2);
-  const scene::Background background = MakeBackground(*source_, survey_, SurfaceOfPoints(survey_), 1, threads);
+  const scene::Background background = MakeBackground(*source_, survey_, SurfaceOfPoints(survey_), {}, 1, threads);
   const auto down_at = [&](double x) { return background.Color({x, 0.0, 50.0}, {0.0, 0.0, -1.0}); };
   EXPECT_NEAR(down_at(-24.0)[0], 150.0F / 255.0F, 0.01F) << "the checkerboard is blurred";
   EXPECT_NEAR(down_at(-24.0)[1], 80.0F / 255.0F, 0.01F);
@@ -146,7 +146,7 @@ TEST_F(ViewCountTest, TheBackgroundShowsCoarseColoursWhereOnePhotoLookedAndNearO
   EXPECT_NEAR(down_at(80.0)[1], 80.0F / 255.0F, 0.01F);
   EXPECT_NEAR(down_at(-300.0)[1], 80.0F / 255.0F, 0.02F) << "beyond the photos the colour of their edge is continued";
   EXPECT_EQ(background.Color({0.0, 0.0, 50.0}, {1.0, 0.0, 0.1}), background.mean_srgb) << "the sky";
-  const scene::Background flat = MakeBackground(*source_, survey_, {}, 1, threads);
+  const scene::Background flat = MakeBackground(*source_, survey_, {}, {}, 1, threads);
   EXPECT_EQ(flat.Color({0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}), flat.mean_srgb) << "without points";
 }
 

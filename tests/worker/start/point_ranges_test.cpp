@@ -1,0 +1,162 @@
+// Two photos that look level at a wall, its points, and the sky above it: what is free, hidden, seen by both, and sky.
+#include "worker/start/point_ranges.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "core/image/image.h"
+#include "tests/support/nadir_photo.h"
+#include "tests/support/temporary_folder.h"
+#include "worker/make_background.h"
+#include "worker/start/starting_occupancy.h"
+#include "worker/start/view_count.h"
+
+namespace skyquilt::worker {
+namespace {
+
+constexpr int kPhotoWidth = 96, kPhotoHeight = 72;
+constexpr double kWall = 20.0;  // y of the wall, which is 10 m high
+
+// From `eye` to the north.
+survey::Photo LevelPhoto(const Eigen::Vector3d& eye, const std::string& name) {
+  survey::Photo photo = NadirPhoto(eye, name);
+  Eigen::Matrix3d rotation;
+  rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
+  photo.cam_from_enu.translation = -(rotation * eye);
+  return photo;
+}
+
+class PointRangesTest : public ::testing::Test {
+ protected:
+  using MakePhoto = survey::Photo(const Eigen::Vector3d& eye, const std::string& name);
+
+  // Photos at x = 0 and x = 16, 2 m above the ground: each shows 40 x 30 m of the plane of the wall.
+  void Photograph(std::array<uint8_t, 3> above, MakePhoto make = LevelPhoto) {
+    camera::Camera camera;
+    camera.width = kPhotoWidth;
+    camera.height = kPhotoHeight;
+    camera.params = {48.0, 48.0, kPhotoWidth / 2.0, kPhotoHeight / 2.0};
+    survey_ = {};
+    survey_.cameras = {camera};
+    std::vector<image::PixelSource> sources;
+    for (int i = 0; i < 2; ++i) {
+      survey::Photo photo = make({16.0 * i, 0.0, 2.0}, "p" + std::to_string(i) + ".png");
+      image::Image8 picture(kPhotoWidth, kPhotoHeight, 3);
+      for (int y = 0; y < kPhotoHeight; ++y) {
+        const bool is_wall = (kPhotoHeight / 2 - y) * kWall / 48.0 < 8.0;  // its top is 8 m above the cameras
+        for (int x = 0; x < kPhotoWidth; ++x) {
+          for (size_t c = 0; c < 3; ++c) picture.At(x, y)[c] = is_wall ? 150 : above[c];
+        }
+      }
+      image::SavePng(picture, folder_ / photo.name);
+      sources.push_back({folder_ / photo.name, {}});
+      survey_.photos.push_back(std::move(photo));
+    }
+    for (double z = 0.5; z < 10.0; z += 1.0) {
+      for (double x = -20.0; x < 36.0; x += 1.0) {
+        survey::SparsePoint point;
+        point.x_in_enu = {x, kWall, z};
+        std::vector<int32_t> seen_by;
+        for (int i = 0; i < 2; ++i) {
+          if (std::abs(x - 16.0 * i) < 19.0) seen_by.push_back(i);
+        }
+        survey_.points.push_back(point);
+        survey_.tracks.Add(seen_by);
+      }
+    }
+    pixels_ = image::PixelCache::Open(folder_ / "pixels.bin", sources, 0, threads_);
+    source_ = std::make_unique<RaySource>(survey_, pixels_, response_);
+    source_->SetTiles(TrainingTiles(survey_, {0, 1}), {}, 0.0);
+    ranges_ = PointRanges(survey_, *source_, {0, 1}, threads_);
+  }
+  // The tile of the first photo that shows a place.
+  static Tile TileOf(double x, double y, double z) {
+    const double u = 48.0 + 48.0 * x / y, v = 36.0 - 48.0 * (z - 2.0) / y;
+    return {0, static_cast<int16_t>(u * kTileColumns / kPhotoWidth), static_cast<int16_t>(v * kTileRows / kPhotoHeight)};
+  }
+
+  TemporaryFolder folder_;
+  base::ThreadPool threads_{2};
+  survey::Survey survey_;
+  image::PixelCache pixels_;
+  brightness::Response response_ = brightness::Response::Neutral(2, 1);
+  std::unique_ptr<RaySource> source_;
+  PointRanges ranges_;
+};
+
+constexpr std::array<uint8_t, 3> kBlue = {150, 180, 230}, kLamplight = {230, 215, 190};
+
+TEST_F(PointRangesTest, BoundTheSpaceBetweenHalfTheNearestPointAndOneAndAHalfOfTheFarthest) {
+  Photograph(kBlue);
+  ASSERT_FALSE(ranges_.Empty());
+  const PointRanges::Range& wall = ranges_.Of(TileOf(0.0, kWall, 5.0));
+  EXPECT_TRUE(wall.Known());
+  EXPECT_NEAR(wall.nearest, std::hypot(kWall, 3.0), 0.5);
+  EXPECT_NEAR(wall.near, 0.5 * static_cast<double>(wall.nearest), 1e-4);
+  EXPECT_NEAR(wall.far, 1.5 * static_cast<double>(wall.farthest), 1e-4);
+  EXPECT_TRUE(ranges_.MayShow(0, {0.0, kWall, 5.0}, 0.0));
+  EXPECT_FALSE(ranges_.MayShow(0, {0.0, 5.0, 2.5}, 0.0)) << "before the wall";
+  EXPECT_FALSE(ranges_.MayShow(0, {0.0, 40.0, 5.0}, 0.0)) << "behind the wall";
+  EXPECT_TRUE(ranges_.MayShow(0, {0.0, 40.0, 5.0}, 12.0)) << "a ball that reaches back to it";
+}
+
+TEST_F(PointRangesTest, PhotosThatLookDownHaveNone) {
+  Photograph(kBlue, NadirPhoto);
+  EXPECT_TRUE(ranges_.Empty());
+}
+
+TEST_F(PointRangesTest, SkyIsBrightAndNotReddishAboveAllPoints) {
+  Photograph(kBlue);
+  EXPECT_TRUE(ranges_.Of(TileOf(0.0, kWall, 16.5)).sky);
+  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 5.0)).sky);
+  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, -12.0)).sky) << "below the horizon";
+  Photograph(kLamplight);
+  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 16.5)).sky) << "a ceiling";
+}
+
+TEST_F(PointRangesTest, TilesThatOnePhotoShowsAreLeftOut) {
+  Photograph(kBlue);
+  int west = 0, both = 0;
+  for (const Tile& tile : TilesWithEnoughViews(*source_, survey_, {0, 1}, {}, ranges_, 2, threads_)) {
+    if (tile.photo == 0 && tile.row == TileOf(0.0, kWall, 5.0).row) ++(tile.column < TileOf(-6.0, kWall, 5.0).column ? west : both);
+  }
+  EXPECT_EQ(west, 0);
+  EXPECT_GT(both, 20);
+}
+
+TEST_F(PointRangesTest, TrainingStartsNearThePointsAndLeavesTheSkyFree) {
+  Photograph(kBlue);
+  render::TrainedField f;
+  f.map = encoding::SpaceMap::Box({-30.0, -2.0, -4.0}, {46.0, 40.0, 24.0});
+  double extent[3];
+  for (int axis = 0; axis < 3; ++axis) extent[axis] = f.map.extent()[axis];
+  f.occupancy = field::OccupancyGrid::Make(extent, 0.5 * f.map.units_per_metre(), 4'000'000);
+  f.step_m = 0.25;
+  MarkUnseen(*source_, survey_, {0, 1}, {}, ranges_, 2, f, threads_);
+  StartFromRanges(*source_, ranges_, TrainingTiles(survey_, {0, 1}), f);
+  const auto cell = [&](double x, double y, double z) {
+    const Eigen::Vector3f unit = f.map.UnitFromEnu({x, y, z});
+    return static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()));
+  };
+  EXPECT_EQ(f.occupancy.occupied[cell(8.0, kWall, 5.0)], 1);
+  EXPECT_EQ(f.occupancy.occupied[cell(8.0, 3.0, 2.0)], 0) << "before the cameras";
+  EXPECT_EQ(f.occupancy.occupied[cell(8.0, 38.0, 5.0)], 0) << "behind the wall";
+  EXPECT_LT(f.occupancy.tau[cell(8.0, 38.0, 5.0)], 0.0F);
+  EXPECT_EQ(f.occupancy.occupied[cell(8.0, kWall, 15.5)], 0) << "sky";
+}
+
+TEST_F(PointRangesTest, TheBackgroundHasTheColourOfTheSkyAboveTheHorizon) {
+  Photograph(kBlue);
+  const scene::Background background = MakeBackground(*source_, survey_, {}, ranges_, 1, threads_);
+  const std::array<float, 3> up = background.Color({0.0, 0.0, 2.0}, Eigen::Vector3d(0.0, 1.0, 0.7).normalized());
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(up[c], static_cast<float>(kBlue[c]) / 255.0F, 0.02F);
+  EXPECT_EQ(background.Color({0.0, 0.0, 2.0}, Eigen::Vector3d(0.0, 1.0, -0.7).normalized()), background.mean_srgb);
+  Photograph(kLamplight);
+  EXPECT_TRUE(MakeBackground(*source_, survey_, {}, ranges_, 1, threads_).sky_srgb.empty());
+}
+
+}  // namespace
+}  // namespace skyquilt::worker

@@ -1,0 +1,153 @@
+#include "worker/start/point_ranges.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/base/order_statistics.h"
+
+namespace skyquilt::worker {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr size_t kTiles = static_cast<size_t>(kTileRows) * kTileColumns;
+// Surfaces without points may be nearer than the points around them, and farther.
+constexpr float kNearSlack = 0.5F, kFarSlack = 1.5F;
+// Neighbourhoods in tiles on each side, in which points are looked for one after another.
+constexpr std::array<int, 3> kReaches = {2, 4, 8};
+constexpr double kNearestShare = 0.02;  // of a photo's points: so many may be wrong
+// Sky is at least this high above the horizon (sine), this bright, and blue at least by this part of red. Ceilings under lamps are reddish.
+constexpr double kAboveHorizon = 0.03;
+constexpr float kSkyBrightness = 0.45F, kSkyBlue = 1.0F;
+
+bool LookLevel(const survey::Survey& survey, const std::vector<int>& photos) {
+  std::vector<double> down;
+  for (const int photo : photos) {
+    const survey::Photo& p = survey.photos[static_cast<size_t>(photo)];
+    if (!p.is_test) down.push_back(std::abs((p.cam_from_enu.rotation.conjugate() * Eigen::Vector3d::UnitZ()).z()));
+  }
+  return !down.empty() && base::UpperMedian(down) < std::sin(PointRanges::kLevel_deg * std::numbers::pi / 180.0);
+}
+
+size_t IndexOf(int row, int column) {
+  return static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column);
+}
+
+}  // namespace
+
+bool PointRanges::Range::Known() const {
+  return std::isfinite(far);
+}
+
+PointRanges::PointRanges(const survey::Survey& survey, const RaySource& source, const std::vector<int>& photos, base::ThreadPool& threads) {
+  if (survey.tracks.Empty() || !LookLevel(survey, photos)) return;
+  first_.assign(survey.photos.size(), -1);
+  std::vector<int> training;
+  for (const int photo : photos) {
+    if (survey.photos[static_cast<size_t>(photo)].is_test) continue;
+    first_[static_cast<size_t>(photo)] = static_cast<int32_t>(training.size() * kTiles);
+    training.push_back(photo);
+  }
+  ranges_.resize(training.size() * kTiles);
+  for (size_t photo = 0; photo < survey.photos.size(); ++photo) {
+    cameras_.push_back(&source.CameraOf(static_cast<int>(photo)));
+    cam_from_enu_.push_back(survey.photos[photo].cam_from_enu);
+  }
+  std::vector<std::vector<uint32_t>> observed(survey.photos.size());
+  for (size_t point = 0; point < survey.points.size(); ++point) {
+    for (const int32_t photo : survey.tracks.PhotosOf(point)) {
+      if (first_[static_cast<size_t>(photo)] >= 0) observed[static_cast<size_t>(photo)].push_back(static_cast<uint32_t>(point));
+    }
+  }
+  threads.ParallelFor(static_cast<int64_t>(training.size()), [&](int64_t i, int) {
+    const int photo = training[static_cast<size_t>(i)];
+    FindRanges(survey, source, photo, observed[static_cast<size_t>(photo)]);
+    FindSky(source, photo);
+  });
+}
+
+void PointRanges::FindRanges(const survey::Survey& survey, const RaySource& source, int photo, const std::vector<uint32_t>& observed) {
+  const geo::Rigid3d& cam_from_enu = cam_from_enu_[static_cast<size_t>(photo)];
+  const camera::Camera& camera = source.CameraOf(photo);
+  std::array<std::array<float, 2>, kTiles> own;
+  own.fill({kInfinity, 0.0F});
+  std::vector<float> distances;
+  for (const uint32_t point : observed) {
+    const Eigen::Vector3d x_in_cam = cam_from_enu * survey.points[point].x_in_enu;
+    const auto pixel = camera.ImgFromCam(x_in_cam);
+    if (!pixel || !(pixel->minCoeff() >= 0.0 && pixel->x() < camera.width && pixel->y() < camera.height)) continue;
+    const auto distance = static_cast<float>(x_in_cam.norm());
+    auto& [nearest, farthest] =
+        own[IndexOf(static_cast<int>(pixel->y() * kTileRows / camera.height), static_cast<int>(pixel->x() * kTileColumns / camera.width))];
+    nearest = std::min(nearest, distance);
+    farthest = std::max(farthest, distance);
+    distances.push_back(distance);
+  }
+  const float near = distances.empty() ? 0.0F : kNearSlack * base::NearestRankQuantile(distances, kNearestShare);
+  for (int row = 0; row < kTileRows; ++row) {
+    for (int column = 0; column < kTileColumns; ++column) {
+      Range& range = ranges_[static_cast<size_t>(first_[static_cast<size_t>(photo)]) + IndexOf(row, column)];
+      range = {near, kInfinity, 0.0F, kInfinity, false};
+      for (const int reach : kReaches) {
+        for (int y = std::max(0, row - reach); y <= std::min(kTileRows - 1, row + reach); ++y) {
+          for (int x = std::max(0, column - reach); x <= std::min(kTileColumns - 1, column + reach); ++x) {
+            range.nearest = std::min(range.nearest, own[IndexOf(y, x)][0]);
+            range.farthest = std::max(range.farthest, own[IndexOf(y, x)][1]);
+          }
+        }
+        if (range.farthest <= 0.0F) continue;
+        range.near = kNearSlack * range.nearest;
+        range.far = kFarSlack * range.farthest;
+        break;
+      }
+    }
+  }
+}
+
+void PointRanges::FindSky(const RaySource& source, int photo) {
+  const std::vector<Eigen::Vector3f> colors = source.TileColors(photo);
+  Range* ranges = ranges_.data() + first_[static_cast<size_t>(photo)];
+  // Which way is up in the image: towards the edge at which rays rise most.
+  Eigen::Vector3d origin, direction;
+  const auto rise = [&](int row, int column) {
+    source.RayThrough(photo, source.TileCentre({photo, static_cast<int16_t>(column), static_cast<int16_t>(row)}), &origin, &direction);
+    return direction.z();
+  };
+  const double by_row = rise(0, kTileColumns / 2) - rise(kTileRows - 1, kTileColumns / 2);
+  const double by_column = rise(kTileRows / 2, 0) - rise(kTileRows / 2, kTileColumns - 1);
+  const bool along_rows = std::abs(by_row) >= std::abs(by_column);
+  const bool from_first = (along_rows ? by_row : by_column) > 0.0;
+  const int lines = along_rows ? kTileColumns : kTileRows, length = along_rows ? kTileRows : kTileColumns;
+  for (int line = 0; line < lines; ++line) {
+    for (int i = 0; i < length; ++i) {
+      const int step = from_first ? i : length - 1 - i;
+      const int row = along_rows ? step : line, column = along_rows ? line : step;
+      const Eigen::Vector3f& srgb = colors[IndexOf(row, column)];
+      Range& range = ranges[IndexOf(row, column)];
+      if (range.Known() || !(rise(row, column) > kAboveHorizon) || !(srgb.mean() >= kSkyBrightness) || !(srgb.z() >= kSkyBlue * srgb.x())) break;
+      range.sky = true;
+    }
+  }
+}
+
+const PointRanges::Range& PointRanges::Of(const Tile& tile) const {
+  return ranges_[static_cast<size_t>(first_[static_cast<size_t>(tile.photo)]) + IndexOf(tile.row, tile.column)];
+}
+
+bool PointRanges::MayShow(int photo, const Eigen::Vector3d& x_in_enu, double radius_m) const {
+  if (first_[static_cast<size_t>(photo)] < 0) return true;
+  const camera::Camera& camera = *cameras_[static_cast<size_t>(photo)];
+  const Eigen::Vector3d x_in_cam = cam_from_enu_[static_cast<size_t>(photo)] * x_in_enu;
+  const auto pixel = camera.ImgFromCam(x_in_cam);
+  if (!pixel || !pixel->allFinite()) return true;
+  const auto along = [](double at, int size, int count) {
+    return static_cast<int16_t>(std::clamp(at * count / size, 0.0, static_cast<double>(count - 1)));
+  };
+  const Range& range = Of({photo, along(pixel->x(), camera.width, kTileColumns), along(pixel->y(), camera.height, kTileRows)});
+  const double distance = x_in_cam.norm();
+  return distance >= static_cast<double>(range.near) - radius_m && distance <= static_cast<double>(range.far) + radius_m;
+}
+
+}  // namespace skyquilt::worker

@@ -1,0 +1,50 @@
+// Where surfaces are along the rays of photos that look level, known from sparse points before any field is trained. Photos that look down start from
+// a height map (point_surface.h); walls, rooms and streets have no single height over a place. Here every tile of a photo gets the distances of the
+// points that this photo observed in the tile and around it, with slack on both sides: what is nearer is free space, what is farther is hidden.
+// Frame: survey ENU, metres along the ray.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/survey/survey.h"
+#include "worker/rays/ray_source.h"
+
+namespace skyquilt::worker {
+
+class PointRanges {
+ public:
+  // Photos look level when the axes of half of them are within this angle of the horizon.
+  static constexpr double kLevel_deg = 30.0;
+
+  struct Range {
+    float near = 0.0F;     // half the distance of the nearest point around the tile, or of the photo's nearest points where none is around it
+    float nearest = 0.0F;  // of the points around the tile; infinite: none
+    float farthest = 0.0F;
+    float far = 0.0F;    // one and a half times that of the farthest; infinite: none
+    bool sky = false;    // no points around the tile or above it in the photo, it is above the horizon, bright and not reddish
+    bool Known() const;  // whether points are around it
+  };
+
+  PointRanges() = default;  // Empty()
+  // Of the training photos among `photos`. Empty where these look down, and for surveys without tracks. Observations in held-out photos do not count.
+  PointRanges(const survey::Survey& survey, const RaySource& source, const std::vector<int>& photos, base::ThreadPool& threads);
+
+  bool Empty() const { return ranges_.empty(); }
+  // Of a training photo's tile.
+  const Range& Of(const Tile& tile) const;
+  // Whether the photo's surfaces may be at a ball around a place that its image shows: neither nearer nor farther than the range there. True for
+  // photos that were not given.
+  bool MayShow(int photo, const Eigen::Vector3d& x_in_enu, double radius_m) const;
+
+ private:
+  void FindRanges(const survey::Survey& survey, const RaySource& source, int photo, const std::vector<uint32_t>& observed);
+  void FindSky(const RaySource& source, int photo);
+
+  std::vector<int32_t> first_;  // per photo of the survey: of its tiles in ranges_; -1: none
+  std::vector<Range> ranges_;   // [row][column] of each photo
+  std::vector<const camera::Camera*> cameras_;
+  std::vector<geo::Rigid3d> cam_from_enu_;
+};
+
+}  // namespace skyquilt::worker

@@ -239,22 +239,30 @@ std::vector<UpEvidence> StatedEvidence(const Vector3d& up) {
   return {{.kind = "stated", .n = 1, .up = direction, .information = Information(TangentBasis(direction), variance * Eigen::Matrix2d::Identity())}};
 }
 
-// The ground where the plane of the points agrees with `rough_up`; a wall, which is plumb, where it is about upright and `trust_walls`; else nothing,
-// and the log says so.
-std::vector<UpEvidence> PlaneEvidence(const std::vector<Vector3d>& points, const Vector3d& rough_up, bool trust_walls) {
-  std::vector<UpEvidence> plane = GroundEvidence(points, rough_up);
+// Variance of `up` along a direction, by the information of the evidence so far.
+double VarianceAlong(const Vector3d& up, const Matrix3d& information, const Vector3d& direction) {
+  const Basis basis = TangentBasis(up);
+  const Eigen::Vector2d along = basis.transpose() * direction;
+  return along.dot(linear::Inverse<2>(basis.transpose() * information * basis) * along);
+}
+
+// The ground where the plane of the points agrees with up by the cameras or the gimbal. Where it is about upright, and as plumb as these and it
+// itself are accurate, it is a wall, which `trust_walls` lets count. Else nothing; the log says so.
+std::vector<UpEvidence> PlaneEvidence(const std::vector<Vector3d>& points, const UpEvidence& by_photos, bool trust_walls) {
+  std::vector<UpEvidence> plane = GroundEvidence(points, by_photos.up);
   if (plane.empty()) return {};
   const Vector3d normal = plane.front().up;
-  const double leans_deg = std::atan2(normal.cross(rough_up).norm(), normal.dot(rough_up)) / kRadiansPerDegree;
+  const double leans_deg = std::atan2(normal.cross(by_photos.up).norm(), normal.dot(by_photos.up)) / kRadiansPerDegree;
   if (leans_deg <= kGroundAgrees_deg) return plane;
-  const Vector3d plumb = rough_up - normal.dot(rough_up) * normal;
-  if (!trust_walls || leans_deg < 90.0 - kGroundAgrees_deg || !(plumb.norm() > 0.0)) {
-    base::LogInfo("the plane of the sparse points leans by {:.0f} degrees against the other evidence for gravity and is not taken for the ground",
-                  leans_deg);
-    return {};
-  }
-  base::LogInfo("the plane of the sparse points is {:.0f} degrees from level: it is taken for a wall, not for the ground", leans_deg);
+  constexpr double kSigmas = 3.0;
   const double sigma = plane.front().Sigma();
+  const double off_plumb = (90.0 - leans_deg) * kRadiansPerDegree;
+  const bool wall = trust_walls && leans_deg >= 90.0 - kGroundAgrees_deg &&
+                    off_plumb <= kSigmas * std::sqrt(sigma * sigma + VarianceAlong(by_photos.up, by_photos.information, normal));
+  base::LogInfo("the plane of the sparse points leans by {:.0f} degrees against up by the {}: it is taken for {}, not for the ground", leans_deg,
+                by_photos.kind == "gimbal" ? "gimbal angles" : "cameras", wall ? "a wall" : "no evidence of gravity");
+  if (!wall) return {};
+  const Vector3d plumb = by_photos.up - normal.dot(by_photos.up) * normal;
   return {{.kind = "wall", .n = plane.front().n, .up = plumb.normalized(), .information = normal * normal.transpose() / (sigma * sigma)}};
 }
 
@@ -274,7 +282,8 @@ Gravity FindGravity(const std::vector<input::PreparedPhoto>& photos, const std::
   gravity.evidence.insert(gravity.evidence.end(), gimbal.begin(), gimbal.end());
   gravity.evidence.insert(gravity.evidence.end(), cameras.begin(), cameras.end());
   if (!stated) {
-    for (UpEvidence& evidence : PlaneEvidence(points, rough_up, !enough)) gravity.evidence.push_back(std::move(evidence));
+    for (UpEvidence& evidence : PlaneEvidence(points, enough ? gimbal.front() : cameras.front(), !enough))
+      gravity.evidence.push_back(std::move(evidence));
   }
 
   gravity.up = rough_up;

@@ -48,9 +48,9 @@ struct GravityHints {
 };
 
 // All of them, weighted by their information. Gimbal angles replace the camera axes when at least half of the photos have them. The plane of the
-// points counts as ground where it leans by at most kGroundAgrees_deg against these. One that is about upright is a wall, which without gimbal angles
-// says that up lies in it; any other plane does not count, and a line of the log says so. Evidence that contradicts itself widens the result (Birge's
-// ratio). `points` are in the model's frame, may be empty.
+// points counts as ground where it leans by at most kGroundAgrees_deg against these. One that is upright, as far as all accuracies go, is a
+// wall, which without gimbal angles says that up lies in it; any other plane does not count. A line of the log says so. Evidence that contradicts
+// itself widens the result (Birge's ratio). `points` are in the model's frame, may be empty.
 Gravity FindGravity(const std::vector<input::PreparedPhoto>& photos, const std::vector<Eigen::Vector3d>& points, const GravityHints& hints = {});
 
 constexpr double kGimbalCommon_deg = 0.25;

@@ -85,6 +85,10 @@ TEST(MakeBuildings, WithoutScaleAreNotMetricAndAScaleBarGivesIt) {
   input.georeferenced = false;
   const BuildingSet local = MakeBuildings(input, threads);
   EXPECT_FALSE(local.metric);
+  BuildingsInput measured = input;
+  measured.accuracy.scale_percent = 0.5;  // the survey had scale bars
+  EXPECT_TRUE(MakeBuildings(measured, threads).metric);
+  EXPECT_EQ(MakeBuildings(measured, threads).scale_source, "scale bar");
   input.options.scale_bar = {0, 0, 0, 3, 4, 0, 10};  // 5 units are 10 m
   const BuildingSet scaled = MakeBuildings(input, threads);
   EXPECT_TRUE(scaled.metric);

@@ -101,7 +101,7 @@ struct BuildingSet {
   std::vector<Building> buildings;
   bool metric = true;        // lengths are metres; false: of unknown scale, no unit may be printed
   double scale = 1.0;        // already applied to all lengths: factor of --scale-bar, 1 without
-  std::string scale_source;  // "geo-reference", "scale bar", "unknown"
+  std::string scale_source;  // "geo-reference", "scale bar" (here or of the survey), "unknown"
   double gsd_m = 0.0;
 };
 

@@ -312,8 +312,8 @@ void Scale(double factor, BuildingSet* set) {
 void ApplyScale(const BuildingsInput& input, BuildingSet* set) {
   const std::vector<double>& bar = input.options.scale_bar;
   if (bar.empty()) {
-    set->metric = input.georeferenced;
-    set->scale_source = input.georeferenced ? "geo-reference" : "unknown";
+    set->metric = input.georeferenced || input.accuracy.HasScale();
+    set->scale_source = input.georeferenced ? "geo-reference" : set->metric ? "scale bar" : "unknown";
     return;
   }
   set->metric = true;

@@ -27,7 +27,9 @@
 #include "prepare/georeference/filter_sparse_points.h"
 #include "prepare/georeference/georeference.h"
 #include "prepare/georeference/place_by_control.h"
+#include "prepare/georeference/scale_bars.h"
 #include "prepare/georeference/shape_by_tags.h"
+#include "prepare/georeference/stated_up.h"
 #include "prepare/georeference/tags/photo_positions.h"
 #include "prepare/georeference/tags/unfilled_tags.h"
 #include "prepare/holdout.h"
@@ -329,6 +331,8 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   input::WriteInputTable(files, input.out_folder / kInputTable);
   // Faults of these files are told before the long search for poses.
   const control::ControlPoints control_points = georeference::ReadControlPoints(ControlFilesOf(options), photos.usable);
+  const std::vector<georeference::ScaleBar> bars = georeference::ParseScaleBars(options.scale_bars);
+  const control::ControlPoints bar_marks = georeference::ReadScaleMarks(bars, ControlFilesOf(options), control_points, photos.usable);
   base::ThrowIfCancelled();
 
   models::InputModel input_model;
@@ -364,7 +368,9 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   std::vector<Eigen::Vector3d> points;
   points.reserve(model.points.size());
   for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
-  const georeference::PlaceOptions place_options = PlaceOptionsOf(options);
+  georeference::PlaceOptions place_options = PlaceOptionsOf(options);
+  place_options.up = georeference::StatedUp(options.up, prepared);
+  if (place_options.up && folders.exact_origin) base::LogWarning("prepare.up changes nothing, because the frame of this simulation is exact");
   georeference::Georeference georeference = folders.exact_origin ? georeference::KeepExactFrame(prepared, *folders.exact_origin, place_options)
                                                                  : georeference::PlaceOnEarth(prepared, points, place_options);
   // Control points say more of the shape than tags; check points are compared with the final one.
@@ -376,6 +382,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   survey::ControlFit control =
       georeference::PlaceByControl({place_options, control_points, folders.model, has_observations, folders.exact_origin.has_value()},
                                    input_model.sfm, prepared, georeference, threads);
+  georeference::ApplyScaleBars(bars, bar_marks, input_model.sfm, prepared, georeference);
   const std::vector<survey::PhotoTags> placing_tags = PlacingTags(prepared);
   if (withheld) prepared = PutBack(*withheld, held_out, file_of_image, photos.usable, input_model.sfm, georeference);
 

@@ -1,6 +1,8 @@
 #include "prepare/prepare_options.h"
 
 #include "core/base/errors.h"
+#include "prepare/georeference/scale_bars.h"
+#include "prepare/georeference/stated_up.h"
 #include "prepare/holdout.h"
 #include "prepare/input/band_choice.h"
 #include "prepare/input/glob.h"
@@ -60,6 +62,13 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"flight_offsets", &O::flight_offsets, Range::OneOf({"auto", "off"}),
        "auto: tagged heights get an offset and a drift in time per flight where they need it; off: never"},
       {"tag_lag", &O::tag_lag, Range::OneOf({"auto", "off"}), "auto: estimate by how much time the GPS tags lag behind the photos; off: no lag"},
+      {"up", &O::up, Range(),
+       "direction of up, where photos, tags and points cannot tell it: x,y,z in the frame of the camera model, or cameras for the mean up of the "
+       "photos; empty: found"},
+      {"scale_bars", &O::scale_bars, Range(),
+       "lengths measured on site: A,B,LENGTH in metres, several separated by |. A and B are labels of marks in photos (prepare.gcp, or "
+       "prepare.gcp_marks "
+       "alone), or points x;y;z of the camera model. They give a survey without a place on Earth its scale, and are compared with one that has it"},
       {"require_georeference", &O::require_georeference, Range(),
        "stop with status 3 when the place on Earth is uncertain, instead of going on with a warning"},
       {"keep_points", &O::keep_points, Range{2, 1e6}.Or(0),
@@ -73,6 +82,8 @@ void PrepareOptions::Check() const {
   ParseHoldout(holdout);
   if (!photos.empty()) input::ParsePatterns(photos);
   input::CheckBandsOption(bands);
+  georeference::CheckUpOption(up);
+  georeference::ParseScaleBars(scale_bars);
   if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: set it to the name or path of the COLMAP program, for instance colmap");
 }
 

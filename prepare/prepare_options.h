@@ -35,6 +35,8 @@ struct PrepareOptions {
   double flight_gap_s = 900.0;
   std::string flight_offsets = "auto";
   std::string tag_lag = "auto";
+  std::string up;
+  std::string scale_bars;
   bool require_georeference = false;
   int keep_points = 10;
   int seed = 1;

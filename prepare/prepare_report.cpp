@@ -33,6 +33,8 @@ void LogFlights(const survey::GeoFit& fit, const std::vector<survey::Photo>& pho
 const char* EvidenceName(const std::string& kind) {
   if (kind == "gimbal") return "gimbal angles";
   if (kind == "cameras") return "camera axes";
+  if (kind == "stated") return "prepare.up";
+  if (kind == "wall") return "plane of a wall";
   return kind == "ground" ? "plane of the ground" : "heights of the tags";
 }
 

@@ -36,7 +36,10 @@ std::string Number(double value) {
 
 std::string Sentence(const scene::SceneInfo& info, const std::string& title) {
   const std::string georeference = NameOfGeoreference(info);
-  if (georeference == kLocal) return title + " in a local frame of unknown scale, without a place on Earth.";
+  if (georeference == kLocal) {
+    return title + " in a local frame" + (info.accuracy.HasScale() ? " in metres, by scale bars," : " of unknown scale,") +
+           " without a place on Earth.";
+  }
   if (georeference == kExact) return title + " of a simulated survey whose place on Earth is known exactly.";
   if (georeference == kUnknown) return title + ", placed on Earth with unknown accuracy.";
   const std::array<Deviation, 5> deviations = DeviationsOf(info.accuracy);

@@ -151,6 +151,22 @@ void AddControlFlags(CLI::App& command, const Overrides& overrides) {
                 "points of the control file that are only compared: labels separated by commas, or a file with a label per line");
 }
 
+void AddStatedFlags(CLI::App& command, const Overrides& overrides) {
+  AddOptionFlag(command, overrides, "--up", "prepare.up",
+                "direction of up, where photos cannot tell it: x,y,z in the frame of the camera model, or cameras for the mean up of the photos");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--scale-bar",
+          [overrides](const std::vector<std::string>& bars) {
+            overrides->push_back({"prepare.scale_bars", base::Join(bars, "|")});
+          },
+          "length measured on site, in metres, between two labels of marks in photos or two points x;y;z of the camera model: gives a survey without "
+          "a place on Earth its scale; may be repeated [prepare.scale_bars]")
+      ->type_name("A,B,LENGTH")
+      ->expected(1)
+      ->take_all();
+}
+
 void AddBoundaryFlag(CLI::App& command, const Overrides& overrides) {
   command
       .add_option_function<std::string>(

@@ -51,6 +51,8 @@ void AddPlaceFlag(CLI::App& command, const std::string& names, const std::functi
 void AddModelFlag(CLI::App& command, std::string& model);
 // --gcp: a file, stored as an absolute path; --check-points.
 void AddControlFlags(CLI::App& command, const Overrides& overrides);
+// --up, --scale-bar (may be repeated).
+void AddStatedFlags(CLI::App& command, const Overrides& overrides);
 // --boundary: a file; stored as an absolute path, as later commands may run elsewhere.
 void AddBoundaryFlag(CLI::App& command, const Overrides& overrides);
 // --memory.

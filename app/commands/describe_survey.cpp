@@ -77,6 +77,9 @@ nlohmann::ordered_json DescribePlace(const survey::Survey& survey) {
                         {"flight_vertical_offset_m", fit.flight_vertical_offset_m},
                         {"flight_vertical_drift_m", fit.flight_vertical_drift_m}};
   }
+  for (const survey::ScaleBarFit& bar : fit.scale_bars) {
+    place["scale_bars"].push_back({{"a", bar.a}, {"b", bar.b}, {"length_m", bar.length_m}, {"measured_m", Round(bar.measured_m, 4)}});
+  }
   place["accuracy"] = DescribeAccuracy(fit.accuracy);
   if (!fit.gravity.empty()) place["gravity"] = Gravity(fit);
   if (!survey.control.points.empty()) place["control"] = Control(survey.control);

@@ -18,6 +18,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
   AddModelFlag(*command, flags->model);
   AddControlFlags(*command, overrides);
+  AddStatedFlags(*command, overrides);
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddOptionFlag(*command, overrides, "--masks", "prepare.masks",
@@ -30,6 +31,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
       "  skyquilt prepare photos/ --model odm/opensfm/reconstruction.json -o out\n"
       "  skyquilt prepare photos/ -o out --holdout every:10\n"
       "  skyquilt prepare photos/ --gcp gcp_list.txt --check-points T3,T7 -o out\n"
+      "  skyquilt prepare facade/ --up cameras --scale-bar left,right,2.35 --set prepare.gcp_marks=marks.csv -o out\n"
       "Writes out/survey/. Exit status: 0 done, 2 wrong usage, 3 bad input, 130 interrupted.");
   command->callback([&state, flags, overrides] {
     state.run_command = [&state, flags, overrides] {

@@ -68,6 +68,7 @@ void AddRun(CLI::App& app, CommandState& state) {
       "simulated place to use instead of photos" + AllowedText("simulate.place") + " [simulate.place]");
   AddModelFlag(*command, flags->model);
   AddControlFlags(*command, overrides);
+  AddStatedFlags(*command, overrides);
   AddOptionFlag(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
   AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
                 "altitude above ground in metres of each block, row by row from the south-west, separated by commas");

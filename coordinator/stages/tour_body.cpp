@@ -69,7 +69,7 @@ tour::Tour Propose(const Project& project, const scene::SceneInfo& info, const t
   input.ground_m = description.value("ground_m", info.min_enu.z());
   input.heights = heights ? &*heights : nullptr;
   input.buildings = MarksOf(parts.buildings);
-  input.metric = info.georeferenced;
+  input.metric = info.georeferenced || info.accuracy.HasScale();
   input.stops = stops;
   tour::Tour proposed = tour::ProposeTour(input);
   base::LogInfo("tour of {} stop(s) proposed: {}", proposed.stops.size(), project.TourFile().string());

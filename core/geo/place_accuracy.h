@@ -1,6 +1,7 @@
 // How well the place of a survey on Earth is known.
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 namespace skyquilt::geo {
@@ -12,6 +13,9 @@ struct PlaceAccuracy {
   double yaw_deg = std::numeric_limits<double>::quiet_NaN();        // rotation about up
   double horizontal_m = std::numeric_limits<double>::quiet_NaN();   // distance of the survey's middle (both axes together)
   double vertical_m = std::numeric_limits<double>::quiet_NaN();     // height of the survey's middle, in the height system of the tags
+
+  // Lengths are metres; in a local frame only where scale bars have given them.
+  bool HasScale() const { return std::isfinite(scale_percent); }
 };
 
 }  // namespace skyquilt::geo

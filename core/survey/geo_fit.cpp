@@ -37,20 +37,24 @@ ordered_json ToJson(const GeoFit& fit) {
                        {"sigma_deg", NumberOrNull(evidence.sigma_deg)},
                        {"weight", evidence.weight}});
   }
-  return {{"n_matches", fit.n_matches},
-          {"n_inliers", fit.n_inliers},
-          {"rmse_m", NumberOrNull(fit.rmse_m)},
-          {"rmse_horizontal_m", NumberOrNull(fit.rmse_horizontal_m)},
-          {"rmse_vertical_m", NumberOrNull(fit.rmse_vertical_m)},
-          {"scale", fit.scale},
-          {"tag_lag_s", fit.tag_lag_s},
-          {"tag_lag_sigma_s", NumberOrNull(fit.tag_lag_sigma_s)},
-          {"flight_vertical_offset_m", fit.flight_vertical_offset_m},
-          {"flight_vertical_drift_m", fit.flight_vertical_drift_m},
-          {"accuracy", ToJson(fit.accuracy)},
-          {"gravity", std::move(gravity)},
-          {"tags_alone_tilt_deg", NumberOrNull(fit.tags_alone_tilt_deg)},
-          {"adjusted_to_tags", fit.adjusted_to_tags}};
+  ordered_json json = {{"n_matches", fit.n_matches},
+                       {"n_inliers", fit.n_inliers},
+                       {"rmse_m", NumberOrNull(fit.rmse_m)},
+                       {"rmse_horizontal_m", NumberOrNull(fit.rmse_horizontal_m)},
+                       {"rmse_vertical_m", NumberOrNull(fit.rmse_vertical_m)},
+                       {"scale", fit.scale},
+                       {"tag_lag_s", fit.tag_lag_s},
+                       {"tag_lag_sigma_s", NumberOrNull(fit.tag_lag_sigma_s)},
+                       {"flight_vertical_offset_m", fit.flight_vertical_offset_m},
+                       {"flight_vertical_drift_m", fit.flight_vertical_drift_m},
+                       {"accuracy", ToJson(fit.accuracy)},
+                       {"gravity", std::move(gravity)},
+                       {"tags_alone_tilt_deg", NumberOrNull(fit.tags_alone_tilt_deg)},
+                       {"adjusted_to_tags", fit.adjusted_to_tags}};
+  for (const ScaleBarFit& bar : fit.scale_bars) {
+    json["scale_bars"].push_back({{"a", bar.a}, {"b", bar.b}, {"length_m", bar.length_m}, {"measured_m", bar.measured_m}});
+  }
+  return json;
 }
 
 GeoFit GeoFitFromJson(const json& value) {
@@ -75,6 +79,11 @@ GeoFit GeoFitFromJson(const json& value) {
                            .weight = entry.at("weight").get<double>()});
   }
   fit.tags_alone_tilt_deg = NanIfNull(value.at("tags_alone_tilt_deg"));
+  // Only where there are any.
+  for (const json& bar : value.value("scale_bars", json::array())) {
+    fit.scale_bars.push_back(
+        {bar.at("a").get<std::string>(), bar.at("b").get<std::string>(), bar.at("length_m").get<double>(), bar.at("measured_m").get<double>()});
+  }
   fit.adjusted_to_tags = value.value("adjusted_to_tags", false);  // not in surveys of earlier versions
   return fit;
 }

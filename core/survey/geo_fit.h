@@ -13,13 +13,20 @@ namespace skyquilt::survey {
 
 // What one kind of evidence says about the direction of gravity.
 struct GravityEvidence {
-  std::string kind = {};  // gimbal, cameras, ground or gps_heights
+  std::string kind = {};  // stated, gimbal, cameras, ground, wall or gps_heights
   int n = 0;              // photos, points or tags behind it
   // Its up against the frame's final up: how far it leans towards east and north; NaN when it says nothing.
   double lean_east_deg = 0.0;
   double lean_north_deg = 0.0;
   double sigma_deg = 0.0;  // accuracy given to it (both axes together); NaN when it says nothing
   double weight = 0.0;     // 0..1, share of the information on gravity; 0: shown only
+};
+
+// A length that was measured on site, and the same in the survey.
+struct ScaleBarFit {
+  std::string a, b;  // labels of marks, or points of the model
+  double length_m = 0.0;
+  double measured_m = 0.0;
 };
 
 // How well the reconstruction fits the GPS tags, after the corrections below.
@@ -37,6 +44,7 @@ struct GeoFit {
   geo::PlaceAccuracy accuracy = {};
   std::vector<GravityEvidence> gravity = {};
   double tags_alone_tilt_deg = std::numeric_limits<double>::quiet_NaN();  // tilt of a fit to the tags alone against the final frame
+  std::vector<ScaleBarFit> scale_bars = {};                               // those that could be measured
   bool adjusted_to_tags = false;                                          // the poses are those of a bundle adjustment with the tags
 };
 

@@ -66,7 +66,7 @@ struct Truth {
 
 struct Survey {
   geo::Geodetic origin;        // of the ENU frame
-  bool georeferenced = false;  // false: levelled local frame of unknown scale, the origin has no meaning
+  bool georeferenced = false;  // false: levelled local frame, of unknown scale without scale bars; the origin has no meaning
   // What the heights of the frame, the origin's among them, are measured from; core/survey/tagged_heights.h decides it. Computations take them
   // for ellipsoidal whatever it is; unknown in surveys of older programs.
   geo::HeightReference height_reference = geo::HeightReference::kUnknown;

@@ -55,7 +55,7 @@ Json GeoFitJson(const Metrics& metrics) {
   if (!metrics.georeferenced || metrics.geo_fit.n_inliers == 0) {
     for (const char* key : {"rmse_m", "rmse_horizontal_m", "rmse_vertical_m"}) json[key] = nullptr;
   }
-  if (!metrics.georeferenced) json["scale_m_per_model_unit"] = nullptr;
+  if (!metrics.georeferenced && metrics.geo_fit.scale_bars.empty()) json["scale_m_per_model_unit"] = nullptr;
   json["problems"] = metrics.problem_codes;
   return json;
 }

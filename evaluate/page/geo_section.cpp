@@ -20,6 +20,15 @@ std::string WithSigma(double value, double sigma, int decimals, const char* unit
   return FormatFixed(value, decimals) + " \xC2\xB1 " + FormatFixed(sigma, decimals, unit);
 }
 
+std::string ScaleBarsText(const survey::GeoFit& fit) {
+  std::string text;
+  for (const survey::ScaleBarFit& bar : fit.scale_bars) {
+    text += fmt::format(" {} to {}: {} measured on site, {} here.", EscapeHtml(bar.a), EscapeHtml(bar.b), FormatFixed(bar.length_m, 3, "m"),
+                        FormatFixed(bar.measured_m, 3, "m"));
+  }
+  return text;
+}
+
 std::string FittedLead(const survey::Survey& survey) {
   const survey::GeoFit& fit = survey.fit;
   std::string html;
@@ -37,14 +46,23 @@ std::string FittedLead(const survey::Survey& survey) {
     html += fmt::format(" RMSE against the tags {} over {} of {} tagged photos: {} horizontal, {} vertical.", FormatFixed(fit.rmse_m, 2, "m"),
                         fit.n_inliers, fit.n_matches, FormatFixed(fit.rmse_horizontal_m, 2, "m"), FormatFixed(fit.rmse_vertical_m, 2, "m"));
   }
-  return Lead(html + fmt::format(" Coordinates are metres east, north and up of the origin at latitude {}, longitude {}, height {}.",
-                                 FormatFixed(survey.origin.latitude_deg, 6, kDegree), FormatFixed(survey.origin.longitude_deg, 6, kDegree),
-                                 FormatFixed(survey.origin.height_m, 1, "m")));
+  return Lead(html +
+              fmt::format(" Coordinates are metres east, north and up of the origin at latitude {}, longitude {}, height {}.",
+                          FormatFixed(survey.origin.latitude_deg, 6, kDegree), FormatFixed(survey.origin.longitude_deg, 6, kDegree),
+                          FormatFixed(survey.origin.height_m, 1, "m")) +
+              (fit.scale_bars.empty() ? "" : " Scale bars are compared with it." + ScaleBarsText(fit)));
 }
 
 std::string LocalLead(const survey::Survey& survey) {
   std::string html =
-      Lead("There is no geo-reference: positions are in a levelled local frame of unknown scale. Lengths are not metres, and no direction is north.");
+      survey.fit.scale_bars.empty()
+          ? Lead(
+                "There is no geo-reference: positions are in a levelled local frame of unknown scale. Lengths are not metres, and no direction is "
+                "north.")
+          : Lead(
+                "There is no geo-reference: positions are in a levelled local frame. Lengths are metres by the scale bars, and no direction is "
+                "north." +
+                ScaleBarsText(survey.fit));
   std::string reasons;
   for (const survey::Problem& problem : survey.problems) {
     if (problem.about_place) reasons += "<li>" + EscapeHtml(problem.finding) + ".</li>";

@@ -22,8 +22,10 @@ struct Kind {
   const char* name;
   const char* meaning;
 };
-constexpr std::array<Kind, 4> kKinds = {{{"gimbal", "Gimbal", "Gimbal angles in the tags"},
+constexpr std::array<Kind, 6> kKinds = {{{"stated", "Given", "Direction that was given (prepare.up)"},
+                                         {"gimbal", "Gimbal", "Gimbal angles in the tags"},
                                          {"cameras", "Cameras", "Camera axes: most cameras look straight down or are level"},
+                                         {"wall", "Wall", "Plane of the points where it is about upright: up lies in it"},
                                          {"ground", "Ground", "Plane of the ground points"},
                                          {"gps_heights", "GPS heights", "Heights of the GPS tags"}}};
 

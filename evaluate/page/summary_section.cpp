@@ -40,7 +40,9 @@ std::string ControlFigure(const control::ControlErrors& judged, bool check_point
 std::string PositionFigure(const metrics::Metrics& metrics) {
   const survey::GeoFit& fit = metrics.geo_fit;
   const std::string label = "Position error against GPS";
-  if (!metrics.georeferenced) return KeyFigure(label, "none", "no geo-reference: local frame, unknown scale");
+  if (!metrics.georeferenced)
+    return KeyFigure(label, "none",
+                     std::string("no geo-reference: local frame, ") + (fit.scale_bars.empty() ? "unknown scale" : "scale by scale bars"));
   const control::ControlSummary control = control::SummariseControl(metrics.control);
   if (const control::ControlErrors* const judged = control.Judged()) return ControlFigure(*judged, judged == &control.check);
   const double rmse_m = fit.n_inliers > 0 ? fit.rmse_m : kNotMeasured;
@@ -50,7 +52,8 @@ std::string PositionFigure(const metrics::Metrics& metrics) {
 
 std::string GroundSamplingFigure(const ReportInput& input) {
   const std::string label = "Ground sampling distance";
-  if (!input.metrics->georeferenced) return KeyFigure(label, FormatFixed(kNotMeasured, 0), "unknown without a geo-reference");
+  if (!input.metrics->georeferenced && input.metrics->geo_fit.scale_bars.empty())
+    return KeyFigure(label, FormatFixed(kNotMeasured, 0), "unknown without a geo-reference");
   std::vector<double> gsd_cm;
   for (const partition::Block& block : input.blocks->blocks) {
     if (!block.empty) gsd_cm.push_back(100.0 * block.gsd_m);

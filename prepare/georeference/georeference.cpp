@@ -255,13 +255,19 @@ bool LeavesNorthOpen(const std::vector<input::PreparedPhoto>& photos, const Grav
 
 Georeference PlaceOnEarth(const std::vector<input::PreparedPhoto>& given, const std::vector<Vector3d>& points, const PlaceOptions& options) {
   Georeference result;
-  result.gimbal = JudgeGimbal(given, points, [&] { return UpByTags(given, options); });
+  const GravityHints hints{.tags_up =
+                               [&, known = std::optional<std::optional<Vector3d>>()]() mutable {
+                                 if (!known) known = UpByTags(given, options);
+                                 return *known;
+                               },
+                           .stated_up = options.up};
+  if (!hints.stated_up) result.gimbal = JudgeGimbal(given, points, hints.tags_up);
   const std::vector<input::PreparedPhoto> without_angles =
       result.gimbal.use == GimbalUse::kDropped ? WithoutAngles(given) : std::vector<input::PreparedPhoto>();
   const std::vector<input::PreparedPhoto>& photos = result.gimbal.use == GimbalUse::kDropped ? without_angles : given;
   const std::vector<int> flight_of_photo = input::SplitFlights(photos, options.flight_gap_s);
   result.photos = NoFits(flight_of_photo);
-  const Gravity gravity = FindGravity(photos, points);
+  const Gravity gravity = FindGravity(photos, points, hints);
   const auto n_tagged = std::count_if(photos.begin(), photos.end(), [](const input::PreparedPhoto& photo) { return photo.gps.has_value(); });
   result.fit.n_matches = static_cast<int>(n_tagged);
   const char* use_tags =

@@ -60,10 +60,9 @@ bool IsLevel(const std::vector<input::PreparedPhoto>& photos, const Vector3d& up
 
 }  // namespace
 
-GimbalVerdict JudgeGimbal(const std::vector<input::PreparedPhoto>& photos, const std::vector<Vector3d>& points,
-                          const std::function<std::optional<Vector3d>()>& tags_up) {
+GimbalVerdict JudgeGimbal(const std::vector<input::PreparedPhoto>& photos, const std::vector<Vector3d>& points, const UpByTagsFunction& tags_up) {
   const std::vector<UpEvidence> gimbal = GimbalEvidence(photos);
-  const std::vector<UpEvidence> cameras = CameraEvidence(photos);
+  const std::vector<UpEvidence> cameras = CameraEvidence(photos, tags_up);
   if (gimbal.empty() || cameras.empty()) return {};
   const Vector3d &by_gimbal = gimbal.front().up, &by_cameras = cameras.front().up;
   const double angle_deg = AngleBetween(by_gimbal, by_cameras);

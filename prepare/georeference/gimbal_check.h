@@ -4,11 +4,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "prepare/georeference/camera_up.h"
 #include "prepare/input/prepared_photo.h"
 
 namespace skyquilt::prepare::georeference {
@@ -24,10 +24,10 @@ struct GimbalVerdict {
   double angle_deg = 0.0;  // between up by gimbal angles and up by camera axes, when they contradict each other
 };
 
-// `points` are sparse points, all in the model's frame; may be empty. `tags_up`: the direction of up of a fit to the tagged positions alone, nothing
-// when they do not determine it; asked for only when angles and axes contradict each other.
+// `points` are sparse points, all in the model's frame; may be empty. `tags_up` is asked for only when angles and axes contradict each other, or the
+// cameras all look the same way.
 GimbalVerdict JudgeGimbal(const std::vector<input::PreparedPhoto>& photos, const std::vector<Eigen::Vector3d>& points,
-                          const std::function<std::optional<Eigen::Vector3d>()>& tags_up);
+                          const UpByTagsFunction& tags_up);
 
 // How angles may be wrong.
 enum class GimbalFault { kNone, kOppositePitch, kFromStraightDown, kAllZero, kOther };

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/log.h"
 #include "core/base/order_statistics.h"
 #include "core/linear/linear.h"
 #include "prepare/bundle/robust.h"
@@ -128,34 +129,6 @@ UpEvidence SolveUp(const std::vector<Statement>& statements, const Vector3d& sta
   return result;
 }
 
-Vector3d ViewInModel(const input::PreparedPhoto& photo) {
-  return photo.cam_from_model.rotation.conjugate() * Vector3d::UnitZ();
-}
-
-// A first guess from the axes of the cameras: perpendicular to their right axes where these differ in direction, otherwise against the mean view.
-Vector3d RoughUp(const std::vector<input::PreparedPhoto>& photos) {
-  Matrix3d right_axes = Matrix3d::Zero();
-  Vector3d view = Vector3d::Zero();
-  Vector3d camera_up = Vector3d::Zero();
-  const auto n = static_cast<double>(photos.size());
-  for (const input::PreparedPhoto& photo : photos) {
-    const Matrix3d model_from_cam = photo.cam_from_model.rotation.conjugate().toRotationMatrix();
-    right_axes += model_from_cam.col(0) * model_from_cam.col(0).transpose() / n;
-    view += model_from_cam.col(2) / n;
-    camera_up -= model_from_cam.col(1) / n;
-  }
-  const linear::EigenPairs<3> eigen = linear::SymmetricEigen(right_axes);
-  constexpr double kSpread = 0.03;
-  const Vector3d hint = view.norm() > 0.1 ? Vector3d(-view) : camera_up;
-  Vector3d up = hint;
-  if (eigen.values[1] > kSpread && eigen.values[0] < 0.5 * eigen.values[1]) {
-    up = eigen.vectors.col(0);
-    // Level cameras all around give no hint by their views; their own up does.
-    if (up.dot(std::abs(up.dot(view)) > 0.1 ? Vector3d(-view) : camera_up) < 0.0) up = -up;
-  }
-  return up.norm() > 1e-9 ? up.normalized() : Vector3d::UnitZ();
-}
-
 }  // namespace
 
 double UpEvidence::Sigma() const {
@@ -183,16 +156,18 @@ std::vector<UpEvidence> GimbalEvidence(const std::vector<input::PreparedPhoto>& 
   return {evidence};
 }
 
-std::vector<UpEvidence> CameraEvidence(const std::vector<input::PreparedPhoto>& photos) {
+std::vector<UpEvidence> CameraEvidence(const std::vector<input::PreparedPhoto>& photos, const UpByTagsFunction& tags_up) {
   if (photos.empty()) return {};
-  UpEvidence evidence{.up = RoughUp(photos)};
+  const HeldCameras held = FindHeldCameras(photos, tags_up);
+  UpEvidence evidence{.up = held.up};
   // Which cameras are meant to look straight down depends on the result.
   for (int round = 0; round < 3; ++round) {
     std::vector<Statement> statements;
     statements.reserve(photos.size());
-    for (const input::PreparedPhoto& photo : photos) {
-      const Matrix3d cam_from_model = photo.cam_from_model.rotation.toRotationMatrix();
-      const bool nadir = -ViewInModel(photo).dot(evidence.up) > std::cos(kNadir_deg * kRadiansPerDegree);
+    for (const Eigen::Quaterniond& rotation : held.cam_from_model) {
+      const Matrix3d cam_from_model = rotation.toRotationMatrix();
+      const Vector3d view = rotation.conjugate() * Vector3d::UnitZ();
+      const bool nadir = -view.dot(evidence.up) > std::cos(kNadir_deg * kRadiansPerDegree);
       Vector3d up_in_cam = nadir ? Vector3d(0.0, 0.0, -1.0) : Vector3d(cam_from_model * evidence.up);
       up_in_cam.x() = 0.0;
       statements.push_back(MakeStatement(cam_from_model, up_in_cam.normalized()));
@@ -255,17 +230,61 @@ std::vector<UpEvidence> GroundEvidence(const std::vector<Vector3d>& points, cons
   return {evidence};
 }
 
-Gravity FindGravity(const std::vector<input::PreparedPhoto>& photos, const std::vector<Vector3d>& points) {
+namespace {
+
+// By the user.
+std::vector<UpEvidence> StatedEvidence(const Vector3d& up) {
+  const double variance = 0.5 * std::pow(kStatedUp_deg * kRadiansPerDegree, 2);
+  const Vector3d direction = up.normalized();
+  return {{.kind = "stated", .n = 1, .up = direction, .information = Information(TangentBasis(direction), variance * Eigen::Matrix2d::Identity())}};
+}
+
+// Variance of `up` along a direction, by the information of the evidence so far.
+double VarianceAlong(const Vector3d& up, const Matrix3d& information, const Vector3d& direction) {
+  const Basis basis = TangentBasis(up);
+  const Eigen::Vector2d along = basis.transpose() * direction;
+  return along.dot(linear::Inverse<2>(basis.transpose() * information * basis) * along);
+}
+
+// The ground where the plane of the points agrees with up by the cameras or the gimbal. Where it is about upright, and as plumb as these and it
+// itself are accurate, it is a wall, which `trust_walls` lets count. Else nothing; the log says so.
+std::vector<UpEvidence> PlaneEvidence(const std::vector<Vector3d>& points, const UpEvidence& by_photos, bool trust_walls) {
+  std::vector<UpEvidence> plane = GroundEvidence(points, by_photos.up);
+  if (plane.empty()) return {};
+  const Vector3d normal = plane.front().up;
+  const double leans_deg = std::atan2(normal.cross(by_photos.up).norm(), normal.dot(by_photos.up)) / kRadiansPerDegree;
+  if (leans_deg <= kGroundAgrees_deg) return plane;
+  constexpr double kSigmas = 3.0;
+  const double sigma = plane.front().Sigma();
+  const double off_plumb = (90.0 - leans_deg) * kRadiansPerDegree;
+  const bool wall = trust_walls && leans_deg >= 90.0 - kGroundAgrees_deg &&
+                    off_plumb <= kSigmas * std::sqrt(sigma * sigma + VarianceAlong(by_photos.up, by_photos.information, normal));
+  base::LogInfo("the plane of the sparse points leans by {:.0f} degrees against up by the {}: it is taken for {}, not for the ground", leans_deg,
+                by_photos.kind == "gimbal" ? "gimbal angles" : "cameras", wall ? "a wall" : "no evidence of gravity");
+  if (!wall) return {};
+  const Vector3d plumb = by_photos.up - normal.dot(by_photos.up) * normal;
+  return {{.kind = "wall", .n = plane.front().n, .up = plumb.normalized(), .information = normal * normal.transpose() / (sigma * sigma)}};
+}
+
+}  // namespace
+
+Gravity FindGravity(const std::vector<input::PreparedPhoto>& photos, const std::vector<Vector3d>& points, const GravityHints& hints) {
   Gravity gravity;
-  const std::vector<UpEvidence> gimbal = GimbalEvidence(photos);
-  std::vector<UpEvidence> cameras = CameraEvidence(photos);
+  std::vector<UpEvidence> gimbal = GimbalEvidence(photos);
+  std::vector<UpEvidence> cameras = CameraEvidence(photos, hints.tags_up);
   if (cameras.empty()) return gravity;
   const bool enough = !gimbal.empty() && 2 * gimbal.front().n >= static_cast<int>(photos.size());
-  for (UpEvidence& evidence : cameras) evidence.used = !enough;
-  const Vector3d rough_up = enough ? gimbal.front().up : cameras.front().up;
-  gravity.evidence = gimbal;
+  const bool stated = hints.stated_up.has_value();
+  for (UpEvidence& evidence : gimbal) evidence.used = !stated;
+  for (UpEvidence& evidence : cameras) evidence.used = !enough && !stated;
+  const Vector3d rough_up = stated ? hints.stated_up->normalized() : enough ? gimbal.front().up : cameras.front().up;
+  if (stated) gravity.evidence = StatedEvidence(*hints.stated_up);
+  gravity.evidence.insert(gravity.evidence.end(), gimbal.begin(), gimbal.end());
   gravity.evidence.insert(gravity.evidence.end(), cameras.begin(), cameras.end());
-  for (UpEvidence& evidence : GroundEvidence(points, rough_up)) gravity.evidence.push_back(std::move(evidence));
+  if (!stated) {
+    for (UpEvidence& evidence : PlaneEvidence(points, enough ? gimbal.front() : cameras.front(), !enough))
+      gravity.evidence.push_back(std::move(evidence));
+  }
 
   gravity.up = rough_up;
   for (int round = 0; round < kGravityRounds; ++round) {

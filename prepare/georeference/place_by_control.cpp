@@ -60,16 +60,22 @@ void SettleReading(const control::ControlJob& without_ties, control::ControlPoin
 
 }  // namespace
 
-control::ControlPoints ReadControlPoints(const control::ControlFiles& given, const std::vector<input::PhotoFile>& files) {
-  if (given.points.empty()) return {};
+std::vector<control::PhotoSize> PhotoSizesOf(const std::vector<input::PhotoFile>& files) {
   std::vector<control::PhotoSize> photos;
-  std::vector<geo::Geodetic> tags;
   photos.reserve(files.size());
   for (const input::PhotoFile& file : files) {
     photos.push_back({file.name, file.width, file.height, file.tags.original_width, file.tags.original_height, file.tags.orientation});
+  }
+  return photos;
+}
+
+control::ControlPoints ReadControlPoints(const control::ControlFiles& given, const std::vector<input::PhotoFile>& files) {
+  if (given.points.empty()) return {};
+  std::vector<geo::Geodetic> tags;
+  for (const input::PhotoFile& file : files) {
     if (file.tags.gps) tags.push_back(*file.tags.gps);
   }
-  control::ControlPoints control = control::ReadControl(given, photos);
+  control::ControlPoints control = control::ReadControl(given, PhotoSizesOf(files));
   for (const std::string& warning : control.warnings) base::LogWarning("{}", warning);
   control::CheckNear(control, tags);
   // Tags may turn out not to place the survey; then FitControl refuses.

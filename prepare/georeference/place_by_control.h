@@ -16,6 +16,8 @@
 
 namespace skyquilt::prepare::georeference {
 
+std::vector<control::PhotoSize> PhotoSizesOf(const std::vector<input::PhotoFile>& files);
+
 // The control points of these files, none without a file of points: warnings are logged, and the points are near the photos' tags and enough where
 // there are no tags. Throws as ReadControl, CheckNear and CheckGeometry do.
 control::ControlPoints ReadControlPoints(const control::ControlFiles& given, const std::vector<input::PhotoFile>& files);

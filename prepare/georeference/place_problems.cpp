@@ -17,6 +17,7 @@ using survey::Problem;
 
 constexpr double kWarnDrift_m = 5.0;
 constexpr double kWarnGround_deg = 5.0;
+constexpr const char* kNoScale = "a levelled local frame of unknown scale, and lengths are not metres";
 constexpr const char* kRestart = "then run the same command with --restart";
 
 std::string Names(const std::vector<std::string>& names) {
@@ -34,6 +35,7 @@ const survey::GravityEvidence* Find(const survey::GeoFit& fit, const std::string
 
 // What the direction of gravity rests on.
 std::string GravityWords(const PlaceFindings& findings) {
+  if (Find(findings.fit, "stated") != nullptr) return "prepare.up";
   return findings.gimbal_used ? "the gimbal angles in the tags" : "the camera axes and the plane of the ground, since the tags have no gimbal angles";
 }
 
@@ -143,8 +145,16 @@ Problem ScaleUncertain(double scale_percent) {
 }
 
 Problem NoPlace(const std::string& code, const std::string& reason, const std::string& advice) {
-  return {code, fmt::format("No place on Earth: {}. The survey has a levelled local frame of unknown scale, and lengths are not metres", reason),
-          advice, true};
+  return {code, fmt::format("No place on Earth: {}. The survey has {}", reason, kNoScale), advice, true};
+}
+
+void SayLengthsAreMetres(std::vector<Problem>* problems) {
+  const std::string no_scale = kNoScale;
+  for (Problem& problem : *problems) {
+    if (const size_t at = problem.finding.find(no_scale); at != std::string::npos) {
+      problem.finding.replace(at, no_scale.size(), "a levelled local frame, whose lengths are metres by the scale bars");
+    }
+  }
 }
 
 Problem ColumnProblem() {

@@ -38,6 +38,9 @@ survey::Problem NoPlace(const std::string& code, const std::string& reason, cons
 survey::Problem ColumnProblem();
 survey::Problem OnePlaceProblem(const std::vector<input::PreparedPhoto>& photos, const Eigen::Vector3d& up);
 
+// Scale bars have given the local frame its scale: problems of NoPlace say so from now on.
+void SayLengthsAreMetres(std::vector<survey::Problem>* problems);
+
 // Why the accuracy does not allow to claim a place; empty when it does. On one line a few tags that agree by chance pass for a fit, so there at least
 // half of the tags have to agree.
 std::vector<survey::Problem> TooUncertain(const survey::GeoFit& fit, bool one_line);

@@ -94,7 +94,9 @@ std::optional<Shaped> AdjustShape(const ShapeStart& start, bool hold_focal, base
   std::vector<Eigen::Vector3d> points;
   points.reserve(shaped.model.points.size());
   for (const survey::ColmapPoint& point : shaped.model.points) points.push_back(point.x_in_world);
-  shaped.georeference = PlaceOnEarth(shaped.photos, points, start.input.options);
+  PlaceOptions options = start.input.options;
+  if (options.up) options.up = start.georeference.enu_from_model.rotation * *options.up;
+  shaped.georeference = PlaceOnEarth(shaped.photos, points, options);
   shaped.error_before = result.error_before;
   shaped.error_after = result.error_after;
   return shaped;

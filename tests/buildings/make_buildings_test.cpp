@@ -86,6 +86,10 @@ TEST_F(MakeBuildingsTest, WithoutScaleAreNotMetricAndAScaleBarGivesIt) {
   input_.georeferenced = false;
   const BuildingSet local = MakeBuildings(input_, threads_);
   EXPECT_FALSE(local.metric);
+  BuildingsInput measured = input_;
+  measured.accuracy.scale_percent = 0.5;  // the survey had scale bars
+  EXPECT_TRUE(MakeBuildings(measured, threads_).metric);
+  EXPECT_EQ(MakeBuildings(measured, threads_).scale_source, "scale bar");
   input_.options.scale_bar = {0, 0, 0, 3, 4, 0, 10};  // 5 units are 10 m
   const BuildingSet scaled = MakeBuildings(input_, threads_);
   EXPECT_TRUE(scaled.metric);

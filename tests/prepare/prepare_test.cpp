@@ -109,6 +109,22 @@ TEST_F(PrepareTest, WithoutGpsItGoesOnInALocalFrame) {
   EXPECT_FALSE(survey::LoadSurvey(folder_ / "out").georeferenced);
 }
 
+TEST_F(PrepareTest, AScaleBarGivesALocalFrameMetres) {
+  for (test::FlightPhoto& photo : flight_.photos) {
+    photo.tags.gps.reset();
+    photo.tags.absolute_altitude_m.reset();
+  }
+  Write();
+  // 0.07 units of the model are a metre.
+  options_.scale_bars = "0;0;0,0.7;0;0,10|1;1;1,1;1;2.4,20";
+  const survey::Survey survey = Run();
+  EXPECT_FALSE(survey.georeferenced);
+  EXPECT_NEAR(survey.MedianAgl(), test::kFlightHeight_m, 2.0);
+  EXPECT_NEAR(survey.fit.scale, 1.0 / 0.07, 1e-6);
+  EXPECT_EQ(survey.fit.scale_bars.size(), 2U);
+  EXPECT_TRUE(survey.fit.accuracy.HasScale());
+}
+
 TEST_F(PrepareTest, AllPhotosAtOnePlaceAreNotGeoreferenced) {
   test::SetTags(flight_, [](size_t, const Eigen::Vector3d&) { return Eigen::Vector3d(1.0, 2.0, 50.0); });
   Write();
@@ -341,6 +357,12 @@ TEST_F(PrepareTest, WrongOptionsAreUsageErrors) {
   EXPECT_THROW(Run(), base::UsageError);
   options_ = {};
   options_.flight_offsets = "maybe";
+  EXPECT_THROW(Run(), base::UsageError);
+  options_ = {};
+  options_.up = "north";
+  EXPECT_THROW(Run(), base::UsageError);
+  options_ = {};
+  options_.scale_bars = "A,B,2.5";  // without a file of marks
   EXPECT_THROW(Run(), base::UsageError);
 }
 

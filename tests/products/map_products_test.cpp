@@ -315,6 +315,8 @@ TEST(PlaceMetadata, NamesTheGeoreference) {
   EXPECT_EQ(items(level, false).at("ACCURACY_TILT_DEG"), "2");
   EXPECT_EQ(items(level, false).at("ACCURACY_SCALE_PERCENT"), "unknown");
   EXPECT_EQ(items(level, false).at("TIFFTAG_IMAGEDESCRIPTION"), "Map in a local frame of unknown scale, without a place on Earth.");
+  EXPECT_EQ(items({.scale_percent = 0.5}, false).at("TIFFTAG_IMAGEDESCRIPTION"),
+            "Map in a local frame in metres, by scale bars, without a place on Earth.");
 }
 
 TEST_F(MapProductsTest, LargeMapsHaveOverviewsAndTiles) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -216,6 +217,26 @@ ControlPoints ReadControl(const ControlFiles& files, const std::vector<PhotoSize
   }
   SetCheckPoints(files.check_points, control.points);
   AddMarks(files.marks.empty() ? raw : ReadMarks(files.marks), known, control);
+  WarnOfFewMarks(control);
+  return control;
+}
+
+ControlPoints ReadMarkedPlaces(const fs::path& marks, const std::vector<PhotoSize>& photos) {
+  const RawControl raw = ReadMarks(marks);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  ControlPoints control;
+  control.file = marks.string();
+  std::set<std::string> labels;
+  for (const RawMark& mark : raw.marks) {
+    if (!labels.insert(mark.label).second) continue;
+    ControlPoint point;
+    point.label = mark.label;
+    point.given = Eigen::Vector3d::Constant(kNan);
+    point.place = {kNan, kNan, kNan};
+    point.line = mark.line;
+    control.points.push_back(std::move(point));
+  }
+  AddMarks(raw, ControlPhotos(photos), control);
   WarnOfFewMarks(control);
   return control;
 }

@@ -30,4 +30,8 @@ struct ControlFiles {
 //   base::UsageError  crs, columns, heights or check_points that cannot be meant
 ControlPoints ReadControl(const ControlFiles& files, const std::vector<PhotoSize>& photos);
 
+// The places that a file of marks alone has, in the order of their first marks; their coordinates are NaN. Photos that are not there and places with
+// fewer than three marks become warnings. Throws as ReadControl does for marks.
+ControlPoints ReadMarkedPlaces(const std::filesystem::path& marks, const std::vector<PhotoSize>& photos);
+
 }  // namespace skyquilt::prepare::control

@@ -65,6 +65,7 @@ Survey SmallSurvey() {
                 .accuracy = {.scale_percent = 0.2, .tilt_deg = 0.3, .yaw_deg = 0.1, .horizontal_m = 1.5},
                 .gravity = {{.kind = "gimbal", .n = 3, .lean_east_deg = 0.1, .lean_north_deg = -0.2, .sigma_deg = 0.25, .weight = 0.9}},
                 .tags_alone_tilt_deg = 19.0,
+                .scale_bars = {{"left", "0;0;1", 2.5, 1.0 / 3.0}},
                 .adjusted_to_tags = true};
   survey.checks = {.speed_mps = 8.0, .speed_source = "speed tags", .camera_name = "DJI FC300S", .smear_px = 2.0, .k1 = -0.02};
   survey.problems = {{.code = "tags_disagree", .finding = "half of the tags disagree", .advice = "look", .about_place = true}};

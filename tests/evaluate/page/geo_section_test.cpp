@@ -210,6 +210,16 @@ TEST_F(GeoPage, ALocalFrameIsSaidWithItsReasonAndHasNoMap) {
             "0.0123 \xC2\xB1 0.0004");
 }
 
+TEST_F(GeoPage, ScaleBarsMakeMetresOfALocalFrame) {
+  survey::Survey survey = poor_->survey;
+  survey.fit.scale_bars = {{"left", "<right>", 2.5, 2.493}};
+  const std::string html = SectionOf(survey);
+  ExpectBalanced(html);
+  EXPECT_EQ(html.find("Lengths are not metres"), std::string::npos);
+  EXPECT_NE(html.find("Lengths are metres by the scale bars"), std::string::npos);
+  EXPECT_NE(html.find("left to &lt;right&gt;"), std::string::npos);
+}
+
 TEST_F(GeoPage, ALocalFrameNeverComparesTagsWithIt) {
   survey::Survey survey = sample_->survey;  // tags and all
   survey.georeferenced = false;

@@ -236,7 +236,7 @@ TEST(FindGravity, EvidenceThatContradictsItselfWidensTheResult) {
   const double agreeing = FindGravity(attempt.photos, Ground(attempt.model_from_enu, 0.0, 1.0)).Sigma();
   WithoutAngles(attempt.photos);
   const double level = FindGravity(attempt.photos, Ground(attempt.model_from_enu, 0.0, 1.0)).Sigma();
-  const double steep = FindGravity(attempt.photos, Ground(attempt.model_from_enu, 30.0, 1.0)).Sigma();
+  const double steep = FindGravity(attempt.photos, Ground(attempt.model_from_enu, 25.0, 1.0)).Sigma();
   EXPECT_GT(level, agreeing);
   EXPECT_GT(steep, 1.5 * level);
 }

@@ -21,9 +21,9 @@ export function AboutPanel(): ReactElement {
       <section>
         <h3>Accuracy (one standard deviation)</h3>
         <Rows rows={accuracyRows(project)} />
-        {project.georeferenced ? null : (
+        {project.georeferenced || project.accuracy.scalePercent !== null ? null : (
           <p className="hint">
-            Without geo-reference lengths have no known scale: give the photos positions or control points.
+            Without geo-reference lengths have no known scale: give the photos positions, control points or a scale bar.
           </p>
         )}
       </section>

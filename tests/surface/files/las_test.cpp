@@ -11,7 +11,7 @@
 namespace skyquilt::surface {
 namespace {
 
-using Las = InToronto;
+using LasTest = InToronto;
 
 constexpr FileSelection kOnlyCloud = {.glb = false, .obj = false, .ply = false, .cloud = true, .tiles = false};
 
@@ -35,7 +35,7 @@ struct Las {
   std::string Wkt() const { return bytes.substr(375 + 54, At<uint16_t>(375 + 20)); }
 };
 
-TEST_F(Las, HeaderIsThatOfVersion14) {
+TEST_F(LasTest, HeaderIsThatOfVersion14) {
   const std::vector<CloudPoint> points = SamplePoints(100);
   SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path());
   files.AddPoints(points);
@@ -64,7 +64,7 @@ TEST_F(Las, HeaderIsThatOfVersion14) {
   EXPECT_NE(las.Wkt().find("AUTHORITY[\"EPSG\",\"32617\"]"), std::string::npos);
 }
 
-TEST_F(Las, PointsComeBackToAMillimetre) {
+TEST_F(LasTest, PointsComeBackToAMillimetre) {
   for (const geo::Geodetic& origin : DifficultOrigins()) {
     const TemporaryFolder folder;
     const MapFrame frame(SampleInfo(origin));
@@ -94,7 +94,7 @@ TEST_F(Las, PointsComeBackToAMillimetre) {
   }
 }
 
-TEST_F(Las, SplitsAboveTheLimitIntoCompleteFiles) {
+TEST_F(LasTest, SplitsAboveTheLimitIntoCompleteFiles) {
   const std::vector<CloudPoint> points = SamplePoints(25);
   SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path(), 10);
   files.AddPoints(std::span(points).first(7));
@@ -119,14 +119,14 @@ TEST_F(Las, SplitsAboveTheLimitIntoCompleteFiles) {
   EXPECT_EQ(table[0].detail, "25 points in 3 files");
 }
 
-TEST_F(Las, ExactlyTheLimitIsOneFile) {
+TEST_F(LasTest, ExactlyTheLimitIsOneFile) {
   SurfaceFiles files(frame_, kOnlyCloud, kSampleTile_m, folder_.path(), 10);
   files.AddPoints(SamplePoints(10));
   files.Close();
   EXPECT_EQ(Las(folder_ / "cloud.las").count(), 10U);
 }
 
-TEST_F(Las, PointsThatAreNotFiniteAreLeftOut) {
+TEST_F(LasTest, PointsThatAreNotFiniteAreLeftOut) {
   std::vector<CloudPoint> points = SamplePoints(3);
   points[1].position.y() = std::numeric_limits<double>::quiet_NaN();
   points[2].normal.setZero();
@@ -136,7 +136,7 @@ TEST_F(Las, PointsThatAreNotFiniteAreLeftOut) {
   EXPECT_EQ(Las(folder_ / "cloud.las").count(), 2U);
 }
 
-TEST_F(Las, LocalCloudsSaySo) {
+TEST_F(LasTest, LocalCloudsSaySo) {
   const MapFrame frame(SampleInfo({0.0, 0.0, 0.0}, false));
   SurfaceFiles files(frame, kOnlyCloud, kSampleTile_m, folder_.path());
   files.AddPoints(SamplePoints(3));
@@ -144,7 +144,7 @@ TEST_F(Las, LocalCloudsSaySo) {
   EXPECT_NE(Las(folder_ / "cloud.las").Wkt().find("LOCAL_CS"), std::string::npos);
 }
 
-TEST_F(Las, NamesWhatHeightsAreAbove) {
+TEST_F(LasTest, NamesWhatHeightsAreAbove) {
   for (const geo::Vertical vertical : {geo::Vertical::kAsTagged, geo::Vertical::kEgm96}) {
     const TemporaryFolder folder;
     const MapFrame frame(SampleInfo({43.64, -79.39, 100.0}), vertical);

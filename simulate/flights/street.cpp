@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kStepAlongStreet_m = 1.0;  // the photos to one side, every third, see walls from 3 m apart
+constexpr double kStepAlongStreet_m = 0.8;  // the photos to one side, every third, overlap by two thirds
 constexpr double kRoomForWalker_m = 0.5;
 constexpr double kStreetPitch_deg = 3.0;
 constexpr double kBesideStreet_m = 25.0;  // buildings nearer than this can be seen well

@@ -1,5 +1,6 @@
 // A phone along the longest house front, looking at the wall and a little up.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
@@ -38,7 +39,7 @@ Walk WalkAlong(const PlaceSpec& place, const std::array<Vector2d, 2>& street) {
   const double walked_m = walk.step_m * (place.level_photos - 1);
   // About the place's middle.
   const double middle_m = walk.along.dot(0.5 * (place.area_min + place.area_max) - street[0]);
-  walk.start = street[0] + std::clamp(middle_m - 0.5 * walked_m, 0.0, length_m - walked_m) * walk.along;
+  walk.start = street[0] + std::clamp(middle_m - 0.5 * walked_m, 0.0, std::max(length_m - walked_m, 0.0)) * walk.along;
   return walk;
 }
 

@@ -14,6 +14,7 @@ using Eigen::Vector3f;
 
 constexpr float kEndOfSight_m = 1e6F;
 constexpr size_t kFeelers = 2 * raytrace::kPacket;
+constexpr double kTopReach = 1.1;  // crowns reach no higher than this many heights of their tree
 
 // Spread evenly over the sphere.
 std::array<Vector3f, kFeelers> Feelers() {
@@ -38,7 +39,7 @@ bool IsInOrAtTree(const World& world, const Vector3d& at, double clearance_m) {
   if (world.city() == nullptr) return false;
   const std::vector<Tree>& trees = world.city()->contents().trees;
   return std::any_of(trees.begin(), trees.end(), [&](const Tree& tree) {
-    return at.z() < tree.ground_z_m + kCrownReach * tree.height_m + clearance_m &&
+    return at.z() < tree.ground_z_m + kTopReach * tree.height_m + clearance_m &&
            (tree.position - at.head<2>()).norm() < kCrownReach * tree.crown_radius_m + clearance_m;
   });
 }

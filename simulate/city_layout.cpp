@@ -287,6 +287,18 @@ std::vector<CityLayout::Lane> CityLayout::LanesAcross(int axis, const Eigen::Vec
   return lanes;
 }
 
+std::vector<std::array<Eigen::Vector2d, 2>> CityLayout::StreetsAcross(const Eigen::Vector2d& min, const Eigen::Vector2d& max) const {
+  std::vector<std::array<Eigen::Vector2d, 2>> streets;
+  for (const int axis : {0, 1}) {
+    for (const Lane& lane : LanesAcross(axis, min, max)) {
+      if (lane.to <= lane.from) continue;
+      const auto end = [&](double along) { return turn_.Turned(axis == 1 ? Eigen::Vector2d(along, lane.line) : Eigen::Vector2d(lane.line, along)); };
+      streets.push_back({end(lane.from), end(lane.to)});
+    }
+  }
+  return streets;
+}
+
 std::vector<MovingCar> CityLayout::MakeMovingCars(int count, const Eigen::Vector2d& min, const Eigen::Vector2d& max, base::Random& random) const {
   std::vector<MovingCar> cars;
   for (int k = 0; k < count; ++k) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -100,6 +101,8 @@ class CityLayout {
   GroundSample Sample(float east, float north) const;
   const CityContents& contents() const { return contents_; }
   CityContents& contents() { return contents_; }
+  // Centre lines of the streets that cross the rectangle, from one of its edges to another: both ends, ENU metres.
+  std::vector<std::array<Eigen::Vector2d, 2>> StreetsAcross(const Eigen::Vector2d& min, const Eigen::Vector2d& max) const;
   // `count` cars at random positions on lanes of the streets that cross the rectangle, each from one of its edges to another.
   std::vector<MovingCar> MakeMovingCars(int count, const Eigen::Vector2d& min, const Eigen::Vector2d& max, base::Random& random) const;
 

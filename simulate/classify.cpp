@@ -20,7 +20,11 @@ SurfaceClass ClassOf(const Tag& tag, const Eigen::Vector3f& position, const City
       return city == nullptr ? SurfaceClass::kGround : ClassOfGround(city->Sample(position.x(), position.y()));
     case Part::kWater:
       return SurfaceClass::kWater;
+    case Part::kRoomFloor:
+      return SurfaceClass::kGround;
     case Part::kWall:
+    case Part::kRoomWall:
+    case Part::kRoomFurniture:
       return SurfaceClass::kWall;
     case Part::kFlatRoof:
     case Part::kPitchedRoof:

@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <numbers>
 
+#include "core/base/errors.h"
 #include "core/base/order_statistics.h"
 #include "core/base/random.h"
+#include "simulate/flights/flight_settings.h"
 #include "simulate/noise.h"
 
 namespace skyquilt::simulate {
@@ -203,17 +205,43 @@ GimbalAngles GimbalFromPose(const geo::Rigid3d& cam_from_enu) {
   return {Degrees(yaw), Degrees(pitch), Degrees(roll)};
 }
 
+std::string PhotoName(size_t index) {
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "IMG_%04zu.jpg", index + 1);
+  return name.data();
+}
+
+void PlacePhoto(const PlaceSpec& place, double takeoff_z_m, const Vector3d& position, base::Random& random, PhotoPlan& photo) {
+  photo.cam_from_enu = PoseFromGimbal(position, photo.yaw_deg, photo.pitch_deg, photo.roll_deg);
+  const double noise = place.gps_noise_m;
+  const double gps_error_z = 1.5 * noise * random.Normal(), gps_error_y = noise * random.Normal(), gps_error_x = noise * random.Normal();
+  const Vector3d gps_error(gps_error_x, gps_error_y, gps_error_z);
+  photo.tagged_position = position + gps_error;
+  photo.tagged_gimbal = GimbalAngles{photo.yaw_deg, photo.pitch_deg, photo.roll_deg};
+  photo.relative_altitude_m = position.z() - takeoff_z_m + 0.15 * random.Normal();
+}
+
+void ExposePhotos(const PlaceSpec& place, std::vector<PhotoPlan>& photos) {
+  const std::vector<double> stops = ExposureStops(place, photos.size());
+  for (size_t i = 0; i < photos.size(); ++i) {
+    SetExposure(place.exposure_offset_stops + stops[i], photos[i]);
+    photos[i].exposure_tagged = place.exposure_tags == ExposureTags::kAll || (place.exposure_tags == ExposureTags::kHalf && i % 2 == 0);
+  }
+  SetLight(place, photos);
+}
+
 std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m) {
+  if (place.flight != FlightKind::kSurvey) {
+    throw base::UsageError("simulate.flight = " + FlightName(place.flight) +
+                           " is not allowed: this command plans a survey's flight; set it to survey");
+  }
   const std::vector<Station> stations = PlanStations(place);
-  const std::vector<double> stops = ExposureStops(place, stations.size());
   std::vector<PhotoPlan> photos;
   for (size_t i = 0; i < stations.size(); ++i) {
     const Station& station = stations[i];
     base::Random random(place.seed, 1000 + i);
     PhotoPlan photo;
-    std::array<char, 32> name{};
-    std::snprintf(name.data(), name.size(), "IMG_%04zu.jpg", i + 1);
-    photo.name = name.data();
+    photo.name = PhotoName(i);
     photo.line = station.line;
     photo.oblique = station.pitch_deg > -89.0;
     photo.time_s = kPhotoInterval_s * static_cast<double>(i);
@@ -223,18 +251,10 @@ std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m) {
     const double drift_z = 0.3 * random.Normal(), drift_y = 0.25 * random.Normal(), drift_x = 0.25 * random.Normal();
     const Vector3d drift(drift_x, drift_y, drift_z);
     const Vector3d position = Vector3d(station.position.x(), station.position.y(), takeoff_z_m + station.altitude_m) + drift;
-    photo.cam_from_enu = PoseFromGimbal(position, photo.yaw_deg, photo.pitch_deg, photo.roll_deg);
-    const double noise = place.gps_noise_m;
-    const double gps_error_z = 1.5 * noise * random.Normal(), gps_error_y = noise * random.Normal(), gps_error_x = noise * random.Normal();
-    const Vector3d gps_error(gps_error_x, gps_error_y, gps_error_z);
-    photo.tagged_position = position + gps_error;
-    photo.tagged_gimbal = GimbalAngles{photo.yaw_deg, photo.pitch_deg, photo.roll_deg};
-    photo.relative_altitude_m = position.z() - takeoff_z_m + 0.15 * random.Normal();
-    SetExposure(place.exposure_offset_stops + stops[i], photo);
-    photo.exposure_tagged = place.exposure_tags == ExposureTags::kAll || (place.exposure_tags == ExposureTags::kHalf && i % 2 == 0);
+    PlacePhoto(place, takeoff_z_m, position, random, photo);
     photos.push_back(photo);
   }
-  SetLight(place, photos);
+  ExposePhotos(place, photos);
   return photos;
 }
 

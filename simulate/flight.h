@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/random.h"
 #include "core/geo/transform.h"
 #include "simulate/place_spec.h"
 
@@ -25,6 +26,7 @@ struct PhotoPlan {
   double yaw_deg = 0.0;       // gimbal, clockwise from north
   double pitch_deg = -90.0;   // -90: straight down
   double roll_deg = 0.0;
+  bool position_tagged = true;                                // the tags have the position and relative_altitude_m
   double relative_altitude_m = 0.0;                           // above the take-off point, with the barometer's error
   Eigen::Vector3d tagged_position = Eigen::Vector3d::Zero();  // ENU metres, true position plus GPS noise
   std::optional<GimbalAngles> tagged_gimbal;                  // empty: no such tags
@@ -47,8 +49,15 @@ struct PhotoPlan {
 
 // Nadir lines run north and south with the wide side of the photo across them: one flight over the whole area when all blocks have the same altitude,
 // otherwise one per block. Oblique lines follow. takeoff_z_m: ENU height of the ground at take-off. The tags have noise, but not the errors of
-// place.tag_faults, which ApplyTagFaults adds.
+// place.tag_faults, which ApplyTagFaults adds. Throws base::UsageError for a place with another flight (simulate/flights/level_flight.h).
 std::vector<PhotoPlan> PlanFlight(const PlaceSpec& place, double takeoff_z_m);
+
+// "IMG_0001.jpg" for the first photo, 0.
+std::string PhotoName(size_t index);
+// Sets the pose at `position` (ENU metres) with the photo's angles, and its tags with the errors of GPS and barometer.
+void PlacePhoto(const PlaceSpec& place, double takeoff_z_m, const Eigen::Vector3d& position, base::Random& random, PhotoPlan& photo);
+// Sets the settings of the exposures and the true light of all photos, in the order of capture.
+void ExposePhotos(const PlaceSpec& place, std::vector<PhotoPlan>& photos);
 
 // True factors on linear light relative to normal exposure: red, green, blue.
 std::array<double, 3> LightRgb(const PhotoPlan& photo);

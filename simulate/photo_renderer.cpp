@@ -122,7 +122,7 @@ void PhotoRenderer::ShadeTile(const Frame& frame, const MovingScene& moving, int
     const int y = (tile_y * kTile + static_cast<int>(lane) / kTile) / grid_;
     Vector3f radiance;
     if (rays.triangle[lane] == raytrace::kNoTriangle) {
-      radiance = world_.sky().Radiance({rays.dx[lane], rays.dy[lane], rays.dz[lane]});
+      radiance = world_.sky().Seen({rays.dx[lane], rays.dy[lane], rays.dz[lane]});
     } else {
       const Hit& hit = hits[lane];
       const Surface surface = ((on_moving >> lane) & 1U) != 0 ? World::MovingSurfaceAt(hit, moving.cars) : world_.SurfaceAt(hit);

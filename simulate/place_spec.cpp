@@ -10,6 +10,7 @@
 #include "core/base/random.h"
 #include "core/base/text.h"
 #include "core/geo/crs.h"
+#include "simulate/flights/flight_settings.h"
 #include "simulate/noise.h"
 #include "simulate/simulate.h"
 #include "simulate/terrain.h"
@@ -204,6 +205,9 @@ void ApplyTagOptions(const SimulateOptions& options, PlaceSpec& place) {
   faults.gimbal_common_error_deg = options.gimbal_common_error_deg;
   faults.gimbal_random_error_deg = options.gimbal_random_error_deg;
   faults.speed_tags = options.speed_tags;
+  if (options.tags == "none" || (options.tags == "auto" && place.flight != FlightKind::kSurvey)) {
+    faults.position_tags = faults.gimbal_tags = faults.speed_tags = false;
+  }
   if (options.tag_heights == "zero") {
     faults.heights = HeightTags::kZero;
   } else if (options.tag_heights == "none") {
@@ -224,6 +228,8 @@ void ApplyHillside(const SimulateOptions& options, PlaceSpec& place) {
   if (place.hillside_deg == 0.0) return;
   if (place.landscape == Landscape::kTidalFlat)
     Refuse("hillside_deg", Text(place.hillside_deg), "the water of place 'tidalflat' is level; set it to 0");
+  if (place.landscape == Landscape::kRoom) Refuse("hillside_deg", Text(place.hillside_deg), "the room of flight 'room' is level; set it to 0");
+  if (place.flight != FlightKind::kSurvey) return;
   constexpr double kClearance_m = 10.0;
   const Eigen::Vector2d half = 0.5 * (place.area_max - place.area_min);
   const Eigen::Vector2d block = 2.0 * half.cwiseQuotient(Eigen::Vector2d(place.columns, place.rows));
@@ -275,7 +281,7 @@ void ApplyBuildings(const SimulateOptions& options, PlaceSpec& place) {
     if (options.tower_m > 0.0) Refuse("tower_m", Text(options.tower_m), without + "set it to 0");
   }
   ApplySpecialCases(options, place);
-  if (options.tower_m == 0.0) return;
+  if (options.tower_m == 0.0 || place.flight != FlightKind::kSurvey) return;
   constexpr double kClearance_m = 10.0;
   // The tower may stand on a hill or uphill from take-off, within a cell of the middle of the place.
   const double ground = 2.0 * 1.7 * place.terrain_amplitude_m + HillsideRise(place.hillside_deg).norm() * place.city.pitch_m;
@@ -318,7 +324,9 @@ std::vector<std::string> PlaceNames() {
 PlaceSpec ResolvePlace(const SimulateOptions& options) {
   config::CheckRanges("simulate", options);
   PlaceSpec place;
-  if (options.place == "hamlet") {
+  if (options.flight == "room") {
+    place = RoomPlace();
+  } else if (options.place == "hamlet") {
     place = Hamlet();
   } else if (options.place == "town") {
     place = Town();
@@ -330,6 +338,7 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
     place = SolarFarm();
   }
   place.seed = static_cast<uint32_t>(options.seed);
+  ApplyFlight(options, place);
   ApplyCityYaw(options, place);
   if (options.image_width != 0) {
     const double scale = static_cast<double>(options.image_width) / place.camera.width;

@@ -1,5 +1,5 @@
-// Settings of the simulated places (hamlet, town, smallcity, tidalflat, solar_farm). ResolvePlace applies the user's options to them once; everything
-// else reads the result.
+// Settings of the simulated places (hamlet, town, smallcity, tidalflat, solar_farm, and the room of flight "room"). ResolvePlace applies the user's
+// options to them once; everything else reads the result.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,9 @@
 
 namespace skyquilt::simulate {
 
-enum class Landscape { kCity, kTidalFlat, kSolarFarm };
+enum class Landscape { kCity, kTidalFlat, kSolarFarm, kRoom };
+// How the photos are taken: from above in lines, or level (simulate/flights/).
+enum class FlightKind { kSurvey, kFacade, kOrbit, kStreet, kRoom };
 enum class ExposureTags { kAll, kNone, kHalf };  // kHalf: every second photo has none, beginning with the second
 
 struct CityPlan {
@@ -42,6 +44,8 @@ struct CityPlan {
 struct PlaceSpec {
   std::string name;
   Landscape landscape = Landscape::kCity;
+  FlightKind flight = FlightKind::kSurvey;
+  int level_photos = 0;  // number of photos of a flight that is no survey
   uint32_t seed = 1;
   Eigen::Vector2d area_min = Eigen::Vector2d::Zero();  // the surveyed area, ENU metres
   Eigen::Vector2d area_max = Eigen::Vector2d::Zero();

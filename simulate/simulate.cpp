@@ -19,6 +19,7 @@
 #include "simulate/control_targets.h"
 #include "simulate/control_writer.h"
 #include "simulate/flight.h"
+#include "simulate/flights/level_flight.h"
 #include "simulate/model_frame.h"
 #include "simulate/photo_renderer.h"
 #include "simulate/place_spec.h"
@@ -33,6 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kSeedsPerPhoto = 170;
+constexpr int kSeedsPerLevelPhoto = 600;  // most are on plain walls and in the sky, where no feature is
 constexpr const char* kStarted = "simulate.started";
 constexpr std::array<const char*, 4> kParts = {"images", "sparse", "truth", "control"};
 
@@ -85,7 +87,8 @@ void WriteControl(const SimulateOptions& options, const PlaceSpec& place, const 
 
 SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder, base::ThreadPool& threads) {
   return Simulate(options, folder, threads, [&options](const PlaceSpec& place, const World& world) {
-    std::vector<PhotoPlan> photos = PlanFlight(place, world.TakeoffHeight(place));
+    std::vector<PhotoPlan> photos =
+        place.flight == FlightKind::kSurvey ? PlanFlight(place, world.TakeoffHeight(place)) : PlanLevelFlight(place, world);
     for (size_t i = 0; i < photos.size(); ++i) photos[i].true_depth = i % static_cast<size_t>(options.test_every) == 0;
     return photos;
   });
@@ -108,6 +111,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   summary.n_photos = static_cast<int>(photos.size());
   summary.n_control = static_cast<int>(control.size());
   summary.n_buildings = static_cast<int>(world.buildings().size());
+  const bool is_level = place.flight != FlightKind::kSurvey;
   std::vector<SurfaceSeed> seeds;
   base::Progress progress("simulate", static_cast<double>(photos.size()), "photos");
   for (size_t i = 0; i < photos.size(); ++i) {
@@ -127,7 +131,8 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
     }
     progress.Update(static_cast<double>(i + 1));
     if (!photo.finds_points) continue;
-    for (SurfaceSeed& seed : ChooseSeeds(place.camera, static_cast<int>(i), kSeedsPerPhoto, place.seed)) {
+    for (SurfaceSeed& seed : ChooseSeeds(place.camera, static_cast<int>(i), is_level ? kSeedsPerLevelPhoto : kSeedsPerPhoto, place.seed)) {
+      if (is_level && !HasTexture(pixels, seed.x, seed.y)) continue;
       const uint8_t* rgb = pixels.At(seed.x, seed.y);
       seed.rgb = {rgb[0], rgb[1], rgb[2]};
       seeds.push_back(seed);

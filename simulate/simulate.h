@@ -1,6 +1,6 @@
 // `skyquilt simulate`: makes the photos of a drone survey of an invented place, for tests and demonstrations. Poses, surfaces, brightness and
 // buildings are known exactly, so results can be compared with the truth. Written to the folder:
-//   images/IMG_0001.jpg ...            photos with EXIF and XMP tags like those of a drone
+//   images/IMG_0001.jpg ...            photos with EXIF and XMP tags like those of a drone, or of a phone without GPS (simulate.flight)
 //   sparse/0/{cameras,images,points3D}.bin   COLMAP model of the true poses in the ENU frame of the origin, metres; without exact_frame in another
 //   truth/depth/<stem>.tiff            depth of the test photos (every test_every-th in name order): metres along the camera's z, NaN = sky
 //   truth/normals/<stem>.png           normals of their surfaces (core/image/normal_image.h): of the triangles, ENU, on the camera's side

@@ -1,5 +1,6 @@
 #include "simulate/simulate_options.h"
 
+#include "simulate/flights/flight_settings.h"
 #include "simulate/place_spec.h"
 #include "simulate/simulate.h"
 
@@ -12,6 +13,12 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
   constexpr config::Written kFault = config::Written::kWhenChanged;
   return {
       {"place", &O::place, Range::OneOf(PlaceNames()), "the invented place to survey"},
+      {"flight", &O::flight, Range::OneOf(FlightNames()),
+       "survey: from above, in lines; level flights: facade, along the longest house front; orbit, round a building; street, along a road; room, "
+       "inside one room instead of the place"},
+      {"photos", &O::photos, Range{3, 1000}.Or(0), "number of photos of a level flight; 0: facade 12, orbit 40, street 60, room 50"},
+      {"tags", &O::tags, Range::OneOf({"auto", "all", "none"}),
+       "tags of position, heights and gimbal angles; auto: all of a survey, none of a level flight, as a phone without GPS"},
       {"seed", &O::seed, Range::AtLeast(0), "random seed; the same seed gives the same files"},
       {"image_width", &O::image_width, Range{32, 8192}.Or(0), "width of the photos in pixels; 0: the place's width"},
       {"forward_overlap", &O::forward_overlap, Range{0, 0.95}.OrNegative(),

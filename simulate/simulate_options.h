@@ -11,6 +11,9 @@ namespace skyquilt::simulate {
 
 struct SimulateOptions {
   std::string place = "town";
+  std::string flight = "survey";       // survey, facade, orbit, street or room
+  int photos = 0;                      // of flights other than survey; 0: the flight's number
+  std::string tags = "auto";           // of position and gimbal: all, none, or auto: all of a survey, none of other flights
   int seed = 1;                        // >= 0
   int image_width = 0;                 // pixels; 0: the place's width. The aspect ratio is always the place's
   double forward_overlap = -1.0;       // 0..0.95, share of a photo that the next photo of the line sees too

@@ -36,6 +36,12 @@ Vector3f Sky::Radiance(const Vector3f& direction) const {
   return intensity_ * clear;
 }
 
+Vector3f Sky::Seen(const Vector3f& direction) const {
+  if (direction.z() <= 0.0F) return Radiance(direction);
+  const float c = std::max(direction.dot(sun_direction_), 0.0F);
+  return Radiance(direction) + 0.08F * c * c * sun_over_pi_ + SunGlow(direction);
+}
+
 Vector3f Sky::SunGlow(const Vector3f& direction) const {
   const float c = std::max(direction.dot(sun_direction_), 0.0F);
   const float c4 = c * c * c * c;

@@ -16,6 +16,8 @@ class Sky {
   const Eigen::Vector3f& ground_radiance() const { return ground_radiance_; }  // mean radiance of the ground
   // Radiance from a unit direction without the sun; below the horizon the mean of the ground.
   Eigen::Vector3f Radiance(const Eigen::Vector3f& direction) const;
+  // What a photo shows in a direction where nothing stands: brighter on the sun's side.
+  Eigen::Vector3f Seen(const Eigen::Vector3f& direction) const;
   // Extra radiance near the sun, as mirrored by a smooth wet surface.
   Eigen::Vector3f SunGlow(const Eigen::Vector3f& direction) const;
 

@@ -66,6 +66,20 @@ std::vector<SurfaceSeed> ChooseSeeds(const camera::Camera& camera, int photo, in
   return seeds;
 }
 
+bool HasTexture(const image::Image8& rgb, int x, int y) {
+  constexpr int kReach_px = 2;
+  constexpr int kContrast = 12;  // grey levels
+  int low = 255, high = 0;
+  for (int j = std::max(y - kReach_px, 0); j <= std::min(y + kReach_px, rgb.height - 1); ++j) {
+    for (int i = std::max(x - kReach_px, 0); i <= std::min(x + kReach_px, rgb.width - 1); ++i) {
+      const int green = rgb.At(i, j)[1];
+      low = std::min(low, green);
+      high = std::max(high, green);
+    }
+  }
+  return high - low >= kContrast;
+}
+
 std::vector<survey::ColmapPoint> MakeSparsePoints(const World& world, const camera::Camera& camera, const std::vector<PhotoPlan>& photos,
                                                   const std::vector<SurfaceSeed>& seeds, uint32_t seed, base::ThreadPool& threads) {
   const PointViews views(world, camera, photos);

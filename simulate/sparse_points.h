@@ -9,6 +9,7 @@
 
 #include "core/base/thread_pool.h"
 #include "core/camera/camera.h"
+#include "core/image/image.h"
 #include "core/survey/colmap_model.h"
 #include "simulate/flight.h"
 #include "simulate/world.h"
@@ -25,6 +26,9 @@ struct SurfaceSeed {
 
 // About `count` pixels spread evenly over a photo. The caller fills in their colours.
 std::vector<SurfaceSeed> ChooseSeeds(const camera::Camera& camera, int photo, int count, uint32_t seed);
+
+// Whether a detector could find a feature at a pixel: not on plain walls and in the sky.
+bool HasTexture(const image::Image8& rgb, int x, int y);
 
 // Traces each seed to the static scene (not on water, moving cars and at grazing angles), finds the photos that see the point, and keeps points seen
 // by three or more. Image ids are index + 1. Position errors follow from error_px and the ground sampling distance. Shows progress. Throws

@@ -12,6 +12,7 @@
 #include "core/config/options.h"
 #include "core/image/normal_image.h"
 #include "core/image/srgb.h"
+#include "simulate/flights/flight_settings.h"
 #include "simulate/model_frame.h"
 
 namespace skyquilt::simulate {
@@ -29,11 +30,30 @@ Json OptionsJson(SimulateOptions options) {
   for (const config::Option& option : config::OptionsOf(options)) {
     std::visit([&](const auto* value) { json[option.key] = *value; }, option.value);
   }
+  // Surveys look as before there were other flights.
+  if (options.flight == "survey") {
+    json.erase("flight");
+    json.erase("photos");
+  }
+  if (options.tags == "auto") json.erase("tags");
   return json;
 }
 
 double Rounded(double value, double unit) {
   return std::round(value / unit) * unit;
+}
+
+void TagPosition(const PhotoPlan& photo, const geo::EnuFrame& frame, survey::PhotoTags& tags) {
+  geo::Geodetic gps = frame.GeodeticFromEnu(photo.tagged_position);
+  if (photo.coordinates_swapped) std::swap(gps.latitude_deg, gps.longitude_deg);
+  if (photo.tagged_heights == HeightTags::kZero) gps.height_m = 0.0;
+  if (photo.tagged_heights == HeightTags::kNone) {
+    gps.height_m = std::numeric_limits<double>::quiet_NaN();
+  } else {
+    tags.absolute_altitude_m = Rounded(gps.height_m, 0.01);
+    tags.relative_altitude_m = photo.tagged_heights == HeightTags::kZero ? 0.0 : Rounded(photo.relative_altitude_m, 0.01);
+  }
+  tags.gps = gps;
 }
 
 }  // namespace
@@ -72,16 +92,7 @@ image::Image8 Develop(const image::ImageF& rgb_linear, const Development& develo
 
 survey::PhotoTags MakeTags(const PhotoPlan& photo, const camera::Camera& camera, const geo::EnuFrame& frame) {
   survey::PhotoTags tags;
-  geo::Geodetic gps = frame.GeodeticFromEnu(photo.tagged_position);
-  if (photo.coordinates_swapped) std::swap(gps.latitude_deg, gps.longitude_deg);
-  if (photo.tagged_heights == HeightTags::kZero) gps.height_m = 0.0;
-  if (photo.tagged_heights == HeightTags::kNone) {
-    gps.height_m = std::numeric_limits<double>::quiet_NaN();
-  } else {
-    tags.absolute_altitude_m = Rounded(gps.height_m, 0.01);
-    tags.relative_altitude_m = photo.tagged_heights == HeightTags::kZero ? 0.0 : Rounded(photo.relative_altitude_m, 0.01);
-  }
-  tags.gps = gps;
+  if (photo.position_tagged) TagPosition(photo, frame, tags);
   if (photo.tagged_gimbal) {
     tags.gimbal_yaw_deg = Rounded(std::remainder(photo.tagged_gimbal->yaw_deg, 360.0), 0.01);
     tags.gimbal_pitch_deg = Rounded(photo.tagged_gimbal->pitch_deg, 0.01);
@@ -169,12 +180,17 @@ void WriteSummary(const std::filesystem::path& folder, const PlaceSpec& place, c
     json["city_yaw_deg"] = yaw_deg;
     json["district_yaw_deg"] = {yaw_deg, std::remainder(yaw_deg + turn_deg, 360.0)};
   }
+  if (place.flight != FlightKind::kSurvey) {
+    const Eigen::Vector3d up = model_from_enu ? Eigen::Vector3d(model_from_enu->rotation * Eigen::Vector3d::UnitZ()) : Eigen::Vector3d::UnitZ();
+    json["flight"] = FlightName(place.flight);
+    json["truth"]["up_in_model"] = {up.x(), up.y(), up.z()};
+  }
   if (model_from_enu) {
     const geo::Similarity3d enu_from_model = Inverse(*model_from_enu);
     const Eigen::Quaterniond& r = enu_from_model.rotation;
     const Eigen::Vector3d& t = enu_from_model.translation;
-    json["truth"] = {{"enu_from_model",
-                      {{"scale", enu_from_model.scale}, {"rotation_wxyz", {r.w(), r.x(), r.y(), r.z()}}, {"translation_m", {t.x(), t.y(), t.z()}}}}};
+    json["truth"]["enu_from_model"] = {
+        {"scale", enu_from_model.scale}, {"rotation_wxyz", {r.w(), r.x(), r.y(), r.z()}}, {"translation_m", {t.x(), t.y(), t.z()}}};
   }
   base::WriteFileAtomically(folder / "simulate.json", base::JsonText(json, 1) + "\n");
 }

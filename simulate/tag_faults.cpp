@@ -125,6 +125,7 @@ void ApplyTagFaults(const TagFaults& faults, uint32_t seed, std::vector<PhotoPla
     if (faults.equal) photo.tagged_position = photos.front().tagged_position;
     photo.tagged_heights = faults.heights;
     photo.coordinates_swapped = faults.swapped;
+    photo.position_tagged = faults.position_tags;
     if (!faults.gimbal_tags) photo.tagged_gimbal.reset();
   }
 }

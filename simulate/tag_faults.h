@@ -11,7 +11,7 @@ struct PhotoPlan;
 
 enum class HeightTags { kTrue, kZero, kNone };  // kTrue: as measured, with the errors below
 
-// As the options of the same names (simulate_options.h); the default is a drone without these errors.
+// As the options of the same names (simulate_options.h), and simulate.tags; the default is a drone without these errors.
 struct TagFaults {
   double lag_s = 0.0;
   double drift_m = 0.0;
@@ -27,6 +27,7 @@ struct TagFaults {
   double gimbal_common_error_deg = 0.0;
   double gimbal_random_error_deg = 0.0;
   bool speed_tags = false;
+  bool position_tags = true;  // of latitude, longitude and heights
 };
 
 // Adds the errors to the tags of `photos`, which are in order of capture. Errors of positions add up, in ENU metres, on top of the GPS noise that is

@@ -26,7 +26,10 @@ enum class Part : uint8_t {
   kBridgeRoad,
   kBridgeConcrete,
   kSolarPanel,  // the side to the sun
-  kSolarFrame   // of tables: below, edges and posts
+  kSolarFrame,  // of tables: below, edges and posts
+  kRoomFloor,
+  kRoomWall,      // ceiling and outside too
+  kRoomFurniture  // doors, pictures and the window's frame too
 };
 
 struct Tag {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "simulate/building_material.h"
+#include "simulate/flights/room.h"
 #include "simulate/ground_material.h"
 #include "simulate/noise.h"
 #include "simulate/object_material.h"
@@ -23,6 +24,8 @@ World::World(const PlaceSpec& place, double light_intensity, base::ThreadPool& t
     BuildCity(place, place.area_min - surround, place.area_max + surround);
   } else if (place.landscape == Landscape::kSolarFarm) {
     BuildSolarFarm(place, place.area_min - surround, place.area_max + surround);
+  } else if (place.landscape == Landscape::kRoom) {
+    BuildRoom(place, place.area_min - surround, place.area_max + surround);
   } else {
     BuildTidalFlat(place, place.area_min - surround, place.area_max + surround);
   }
@@ -140,6 +143,12 @@ void World::BuildSolarFarm(const PlaceSpec& place, const Eigen::Vector2d& ground
   AddSolarTables(ground_min, ground_max, ground, mesh_);
 }
 
+void World::BuildRoom(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
+  terrain_ = std::make_unique<Terrain>(ground_min, ground_max, place.terrain_step_m, [](double, double) { return kGroundAtRoom_m; });
+  terrain_->AddTo(mesh_);
+  AddRoom(mesh_);
+}
+
 void World::BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max) {
   channels_ = std::make_unique<TidalChannels>(place.area_min, place.area_max, place.terrain_amplitude_m, seed_);
   terrain_ = std::make_unique<Terrain>(ground_min, ground_max, place.terrain_step_m,
@@ -219,6 +228,10 @@ Surface World::SurfaceAt(const Hit& hit) const {
     case Part::kSolarPanel:
     case Part::kSolarFrame:
       return SolarTableSurface(hit);
+    case Part::kRoomFloor:
+    case Part::kRoomWall:
+    case Part::kRoomFurniture:
+      return RoomSurface(hit);
     default:
       return BuildingSurface(city_->contents().buildings[hit.tag.object], building_axis_[hit.tag.object], hit);
   }

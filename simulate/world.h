@@ -59,6 +59,7 @@ class World {
   Eigen::Vector2d RiseUnderCar(const Eigen::Vector2d& at) const;
   void BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
   void BuildSolarFarm(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
+  void BuildRoom(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
   void BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max);
   // A rectangle whose half sides are `reach` radii; the ground covers it where there is no water.
   void AddWater(const Pond& pond, double reach, uint32_t object);

@@ -19,6 +19,7 @@ void AddSimulate(CLI::App& app, CommandState& state) {
       },
       "place to simulate" + AllowedText("simulate.place") + " [simulate.place]");
   command->add_option("-o,--out", flags->out, "folder for the survey; created if it does not exist")->required()->type_name("FOLDER");
+  AddOptionFlag(*command, overrides, "--flight", "simulate.flight", "how the photos are taken: from above, or level without GPS");
   AddOptionFlag(*command, overrides, "--seed", "simulate.seed", "seed of the place; another number gives another place of the same kind");
   AddOptionFlag(*command, overrides, "--image-width", "simulate.image_width", "width of the photos in pixels");
   AddOptionFlag(*command, overrides, "--altitudes", "simulate.altitudes",
@@ -28,6 +29,7 @@ void AddSimulate(CLI::App& app, CommandState& state) {
       "Examples:\n"
       "  skyquilt simulate hamlet -o data/hamlet\n"
       "  skyquilt simulate town -o data/town --seed 7 --altitudes 60,80,60,80\n"
+      "  skyquilt simulate hamlet -o data/street --flight street\n"
       "  skyquilt simulate tidalflat -o data/flat --set simulate.exposure_jumps_stops=1.5");
   command->callback([&state, flags, overrides] {
     state.run_command = [&state, flags, overrides] {

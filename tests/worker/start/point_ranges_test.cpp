@@ -16,7 +16,7 @@
 namespace skyquilt::worker {
 namespace {
 
-constexpr int kPhotoWidth = 96, kPhotoHeight = 72;
+constexpr int kLevelPhotoWidth = 96, kLevelPhotoHeight = 72;
 constexpr double kWall = 20.0;  // y of the wall, which is 10 m high
 
 // From `eye` to the north.
@@ -36,18 +36,18 @@ class PointRangesTest : public ::testing::Test {
   // Photos at x = 0 and x = 16, 2 m above the ground: each shows 40 x 30 m of the plane of the wall.
   void Photograph(std::array<uint8_t, 3> above, MakePhoto make = LevelPhoto) {
     camera::Camera camera;
-    camera.width = kPhotoWidth;
-    camera.height = kPhotoHeight;
-    camera.params = {48.0, 48.0, kPhotoWidth / 2.0, kPhotoHeight / 2.0};
+    camera.width = kLevelPhotoWidth;
+    camera.height = kLevelPhotoHeight;
+    camera.params = {48.0, 48.0, kLevelPhotoWidth / 2.0, kLevelPhotoHeight / 2.0};
     survey_ = {};
     survey_.cameras = {camera};
     std::vector<image::PixelSource> sources;
     for (int i = 0; i < 2; ++i) {
       survey::Photo photo = make({16.0 * i, 0.0, 2.0}, "p" + std::to_string(i) + ".png");
-      image::Image8 picture(kPhotoWidth, kPhotoHeight, 3);
-      for (int y = 0; y < kPhotoHeight; ++y) {
-        const bool is_wall = (kPhotoHeight / 2 - y) * kWall / 48.0 < 8.0;  // its top is 8 m above the cameras
-        for (int x = 0; x < kPhotoWidth; ++x) {
+      image::Image8 picture(kLevelPhotoWidth, kLevelPhotoHeight, 3);
+      for (int y = 0; y < kLevelPhotoHeight; ++y) {
+        const bool is_wall = (kLevelPhotoHeight / 2 - y) * kWall / 48.0 < 8.0;  // its top is 8 m above the cameras
+        for (int x = 0; x < kLevelPhotoWidth; ++x) {
           for (size_t c = 0; c < 3; ++c) picture.At(x, y)[c] = is_wall ? 150 : above[c];
         }
       }
@@ -75,7 +75,7 @@ class PointRangesTest : public ::testing::Test {
   // The tile of the first photo that shows a place.
   static Tile TileOf(double x, double y, double z) {
     const double u = 48.0 + 48.0 * x / y, v = 36.0 - 48.0 * (z - 2.0) / y;
-    return {0, static_cast<int16_t>(u * kTileColumns / kPhotoWidth), static_cast<int16_t>(v * kTileRows / kPhotoHeight)};
+    return {0, static_cast<int16_t>(u * kTileColumns / kLevelPhotoWidth), static_cast<int16_t>(v * kTileRows / kLevelPhotoHeight)};
   }
 
   TemporaryFolder folder_;

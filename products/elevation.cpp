@@ -207,6 +207,16 @@ Json Describe(const ElevationPlane& plane, const Elevation& made, const scene::S
   return json;
 }
 
+void RemoveElevationsOfWalls(const std::filesystem::path& folder) {
+  for (size_t i = 1; i <= kMostWalls; ++i) {
+    // The description first, so that none names pictures that are not there.
+    for (const char* ending : {".json", ".png", "_preview.png", "_depth.tiff"}) {
+      std::error_code error;
+      std::filesystem::remove(folder / (kWallName + std::to_string(i) + ending), error);
+    }
+  }
+}
+
 }  // namespace
 
 Eigen::Vector3d ElevationPlane::Normal() const {
@@ -305,14 +315,14 @@ Elevation WriteElevation(const ElevationPlane& plane, const scene::SceneInfo& in
   return made;
 }
 
-void RemoveElevationsOfWalls(const std::filesystem::path& folder) {
-  for (size_t i = 1; i <= kMostWalls; ++i) {
-    // The description first, so that none names pictures that are not there.
-    for (const char* ending : {".json", ".png", "_preview.png", "_depth.tiff"}) {
-      std::error_code error;
-      std::filesystem::remove(folder / (kWallName + std::to_string(i) + ending), error);
-    }
-  }
+std::vector<Elevation> WriteElevationsOfWalls(const scene::SceneInfo& info, const survey::Survey& survey, const RayCaster& caster,
+                                              const ProductOptions& options, int image_width, const std::filesystem::path& folder, bool depth) {
+  const std::vector<ElevationPlane> planes = ElevationsOfWalls(info, survey, options, image_width);
+  RemoveElevationsOfWalls(folder);
+  std::vector<Elevation> made;
+  for (const ElevationPlane& plane : planes) made.push_back(WriteElevation(plane, info, caster, options, folder, depth));
+  if (planes.empty()) base::LogInfo("no wall was found in the sparse points, so there is no elevation");
+  return made;
 }
 
 }  // namespace skyquilt::products

@@ -56,7 +56,8 @@ struct Elevation {
 // and base::Interrupted.
 Elevation WriteElevation(const ElevationPlane& plane, const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options,
                          const std::filesystem::path& folder, bool depth);
-// Removes elevation_1 and so on of an earlier run from the folder.
-void RemoveElevationsOfWalls(const std::filesystem::path& folder);
+// All of ElevationsOfWalls, in place of those of an earlier run.
+std::vector<Elevation> WriteElevationsOfWalls(const scene::SceneInfo& info, const survey::Survey& survey, const RayCaster& caster,
+                                              const ProductOptions& options, int image_width, const std::filesystem::path& folder, bool depth);
 
 }  // namespace skyquilt::products

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/errors.h"
+#include "core/base/text.h"
 #include "core/config/options.h"
 
 namespace skyquilt::products {
@@ -45,7 +46,19 @@ ProductKinds KindsOf(const std::string& kinds, bool looks_level) {
     made.*(found->second) = true;
     begin = end + 1;
   }
+  made.terrain = made.terrain || made.buildings;
   return made;
+}
+
+std::string NamesOf(const ProductKinds& kinds) {
+  std::vector<std::string> names;
+  if (kinds.ortho) names.emplace_back("orthophoto");
+  if (kinds.dsm) names.emplace_back("surface model");
+  if (kinds.terrain) names.emplace_back("terrain");
+  if (kinds.buildings) names.emplace_back("buildings");
+  if (kinds.elevations) names.emplace_back("elevations of walls");
+  if (kinds.video) names.emplace_back(kinds.along_cameras ? "video along the cameras" : "video");
+  return names.empty() ? "nothing" : base::Join(names, ", ");
 }
 
 }  // namespace skyquilt::products

@@ -18,7 +18,10 @@ struct ProductKinds {
 };
 
 // kinds: "auto", "all", or names of kinds (ortho, dsm, terrain, buildings, video, elevations) separated by commas. With auto, photos that look level
-// (core/survey/view_kind.h) give elevations of walls and a video along the cameras; other photos give all but elevations. Throws base::UsageError.
+// (core/survey/view_kind.h) give elevations of walls and a video along the cameras; other photos give all but elevations. Buildings are measured
+// above terrain, which is made for them. Throws base::UsageError.
 ProductKinds KindsOf(const std::string& kinds, bool looks_level);
+// In words: "orthophoto, surface model, video along the cameras"; "nothing" for none.
+std::string NamesOf(const ProductKinds& kinds);
 
 }  // namespace skyquilt::products

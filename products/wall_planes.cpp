@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -22,6 +23,7 @@ constexpr double kWallStrays = 0.01;       // of the points, beyond each side
 constexpr size_t kFewestWallPoints = 30;
 constexpr double kShareOnWall = 0.6;  // of the points in its surroundings; where points are everywhere it is a third
 constexpr double kSmallestShare = 0.1;
+constexpr double kLowColumn = 0.3;  // of the height of a wall: columns that rise less are not part of it
 constexpr int kHypotheses = 800, kTestedHypotheses = 40;
 constexpr size_t kScoredPoints = 8000, kDistancePoints = 2000, kWallRounds = 8;
 
@@ -147,12 +149,16 @@ class WallFinder {
     FoundWall wall;
     for (int round = 0; round < 4; ++round) {
       wall.line = line;
-      wall.points = Stretch(line);
+      wall.points = Stretch(line, PointsOn(line));
       if (wall.points.size() < kFewestWallPoints) return std::nullopt;
       line = FitLine(survey_, wall.points);
     }
-    wall.along = RobustRange(wall.points, kWallStrays, [&](size_t i) { return wall.line.Along(At(i)); });
-    wall.z = RobustRange(wall.points, kWallStrays, [&](size_t i) { return At(i).z(); });
+    const auto along = [&](size_t i) { return wall.line.Along(At(i)); };
+    const auto z = [&](size_t i) { return At(i).z(); };
+    KeepStanding(RobustRange(wall.points, kWallStrays, z).Length(), &wall);
+    if (wall.points.size() < kFewestWallPoints) return std::nullopt;
+    wall.along = RobustRange(wall.points, kWallStrays, along);
+    wall.z = RobustRange(wall.points, kWallStrays, z);
     if (!(std::min(wall.along.Length(), wall.z.Length()) >= kSmallestWall * band_m_)) return std::nullopt;
     size_t on = 0, around = 0;
     for (const size_t i : left_) {
@@ -164,11 +170,18 @@ class WallFinder {
     return wall;
   }
 
-  std::vector<size_t> Stretch(const PlanLine& line) const {
-    std::vector<std::pair<double, size_t>> on;
+  std::vector<size_t> PointsOn(const PlanLine& line) const {
+    std::vector<size_t> points;
     for (const size_t i : left_) {
-      if (line.Distance(At(i)) <= band_m_) on.emplace_back(line.Along(At(i)), i);
+      if (line.Distance(At(i)) <= band_m_) points.push_back(i);
     }
+    return points;
+  }
+
+  // The most points without a gap.
+  std::vector<size_t> Stretch(const PlanLine& line, const std::vector<size_t>& points) const {
+    std::vector<std::pair<double, size_t>> on;
+    for (const size_t i : points) on.emplace_back(line.Along(At(i)), i);
     std::sort(on.begin(), on.end());
     size_t best_begin = 0, best_end = 0;
     for (size_t begin = 0; begin < on.size();) {
@@ -180,9 +193,22 @@ class WallFinder {
       }
       begin = end;
     }
-    std::vector<size_t> points;
-    for (size_t k = best_begin; k < best_end; ++k) points.push_back(on[k].second);
-    return points;
+    std::vector<size_t> stretch;
+    for (size_t k = best_begin; k < best_end; ++k) stretch.push_back(on[k].second);
+    return stretch;
+  }
+
+  // Takes away ground in the same plane beyond the ends of the wall: columns of points that do not rise.
+  void KeepStanding(double height_m, FoundWall* wall) const {
+    const auto column = [&](size_t i) { return static_cast<int64_t>(std::floor(wall->line.Along(At(i)) / (kSmallestWall * band_m_))); };
+    std::map<int64_t, Range> columns;
+    for (const size_t i : wall->points) {
+      const double z = At(i).z();
+      Range& range = columns.try_emplace(column(i), Range{z, z}).first->second;
+      range = {std::min(range.low, z), std::max(range.high, z)};
+    }
+    std::erase_if(wall->points, [&](size_t i) { return columns.at(column(i)).Length() < kLowColumn * height_m; });
+    wall->points = Stretch(wall->line, wall->points);
   }
 
   const survey::Survey& survey_;

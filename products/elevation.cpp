@@ -25,7 +25,7 @@
 namespace skyquilt::products {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using ElevationJson = nlohmann::ordered_json;
 
 constexpr double kRad = std::numbers::pi / 180.0;
 constexpr const char* kWallName = "elevation_";
@@ -178,12 +178,12 @@ image::Image8 ScaledPreview(const image::Image8& rgba, double resolution_m, cons
   return preview;
 }
 
-Json Triple(const Eigen::Vector3d& x) {
-  return Json::array({x.x(), x.y(), x.z()});
+ElevationJson Triple(const Eigen::Vector3d& x) {
+  return ElevationJson::array({x.x(), x.y(), x.z()});
 }
 
-Json Describe(const ElevationPlane& plane, const Elevation& made, const scene::SceneInfo& info, bool depth) {
-  Json json;
+ElevationJson Describe(const ElevationPlane& plane, const Elevation& made, const scene::SceneInfo& info, bool depth) {
+  ElevationJson json;
   json["file"] = plane.name + ".png";
   json["preview"] = plane.name + "_preview.png";
   if (depth) json["depth"] = plane.name + "_depth.tiff";

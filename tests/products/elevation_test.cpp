@@ -10,6 +10,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
+#include "core/image/image.h"
 #include "products/camera_path.h"
 #include "tests/support/error_of.h"
 #include "tests/support/temporary_folder.h"

@@ -13,6 +13,8 @@ namespace skyquilt::products {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kPathFovDeg = 55.0;  // of built-in paths
+constexpr double kPhotosPerSecond = 2.0;
 
 geo::Rigid3d PoseFromAxes(const Eigen::Vector3d& eye, const Eigen::Vector3d& right, const Eigen::Vector3d& down, const Eigen::Vector3d& forward) {
   Eigen::Matrix3d cam_from_enu;
@@ -40,6 +42,10 @@ std::string FileStem(const std::string& photo, std::set<std::string>* taken) {
     while (!taken->insert(name).second) name += "_";
   }
   return name;
+}
+
+size_t FramesOf(const ProductOptions& options) {
+  return static_cast<size_t>(std::max(1L, std::lround(options.video_seconds * options.video_fps)));
 }
 
 const survey::Photo& FindPhoto(const survey::Survey& survey, const std::string& name) {
@@ -110,12 +116,47 @@ std::vector<View> ViewsOfPhotos(const survey::Survey& survey, const std::vector<
   return views;
 }
 
+Eigen::Vector3d CatmullRom(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d, double u) {
+  return 0.5 * (2.0 * b + u * (c - a) + u * u * (2.0 * a - 5.0 * b + 4.0 * c - d) + u * u * u * (3.0 * b - 3.0 * c + d - a));
+}
+
+std::vector<View> PathAlongCameras(const survey::Survey& survey, const ProductOptions& options) {
+  options.Check();
+  std::vector<const survey::Photo*> photos;
+  for (const survey::Photo& photo : survey.photos) {
+    if (!photo.is_test) photos.push_back(&photo);
+  }
+  SKYQUILT_CHECK(!photos.empty(), "a path along no photos");
+  if (std::all_of(photos.begin(), photos.end(), [](const survey::Photo* photo) { return photo->time_s.has_value(); })) {
+    std::stable_sort(photos.begin(), photos.end(), [](const survey::Photo* a, const survey::Photo* b) { return *a->time_s < *b->time_s; });
+  }
+  const size_t frames = FramesOf(options);
+  const size_t wanted = static_cast<size_t>(std::max(2L, std::lround(kPhotosPerSecond * options.video_seconds)));
+  const size_t keys = std::min(wanted, photos.size());
+  std::vector<Eigen::Vector3d> eyes, forwards;
+  for (size_t k = 0; k < keys; ++k) {
+    const geo::Rigid3d& pose = photos[keys == 1 ? 0 : k * (photos.size() - 1) / (keys - 1)]->cam_from_enu;
+    eyes.push_back(pose.OriginInSource());
+    forwards.push_back(pose.rotation.conjugate() * Eigen::Vector3d::UnitZ());
+  }
+  std::vector<View> views;
+  for (size_t i = 0; i < frames; ++i) {
+    const double along = frames == 1 ? 0.0 : static_cast<double>((keys - 1) * i) / static_cast<double>(frames - 1);
+    const size_t k = std::min(static_cast<size_t>(along), keys - 1), next = std::min(k + 1, keys - 1);
+    const double u = along - static_cast<double>(k);
+    const Eigen::Vector3d eye = CatmullRom(eyes[k == 0 ? 0 : k - 1], eyes[k], eyes[next], eyes[std::min(k + 2, keys - 1)], u);
+    Eigen::Vector3d forward = (1.0 - u) * forwards[k] + u * forwards[next];
+    if (!(forward.norm() > 1e-3)) forward = forwards[k];  // halfway between opposite views
+    views.push_back({FrameName(i), PinholeCamera(options.video_width, options.video_height, kPathFovDeg), PoseLookingAt(eye, eye + forward)});
+  }
+  return views;
+}
+
 std::vector<View> BuiltInPath(const scene::SceneInfo& info, const ProductOptions& options) {
   options.Check();
-  constexpr double kFovDeg = 55.0;
   constexpr double kDownDeg = 50.0;
-  const camera::Camera camera = PinholeCamera(options.video_width, options.video_height, kFovDeg);
-  const auto frames = static_cast<size_t>(std::max(1L, std::lround(options.video_seconds * options.video_fps)));
+  const camera::Camera camera = PinholeCamera(options.video_width, options.video_height, kPathFovDeg);
+  const size_t frames = FramesOf(options);
   const Eigen::Vector3d extent = info.max_enu - info.min_enu;
   Eigen::Vector3d centre = 0.5 * (info.min_enu + info.max_enu);
   // Aim at the lower third of the height range, where ground and low roofs are.

@@ -33,8 +33,15 @@ std::vector<View> LoadCameraPath(const std::filesystem::path& file, const scene:
 // The same for the text of such a file; messages name `file`.
 std::vector<View> ParseCameraPath(const std::string& text, const std::filesystem::path& file, const scene::SceneInfo& info, int width, int height);
 
-// Frames of the built-in path options.video_path: "orbit" circles the scene's centre, looking 50 degrees down; "flyover" crosses the scene from
-// south-west to north-east, looking ahead and down. Both stay above the highest box.
+// Point on a uniform Catmull-Rom curve (1974), at b for u = 0 and at c for u = 1.
+Eigen::Vector3d CatmullRom(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d, double u);
+
+// Frames of a path along the cameras of the survey's training photos, in the order in which they were taken (by name where times are missing): level
+// pictures that look where the photos look. About two photos per second are key frames. There must be a training photo.
+std::vector<View> PathAlongCameras(const survey::Survey& survey, const ProductOptions& options);
+
+// Frames of the built-in path options.video_path, other than "cameras": "orbit" circles the scene's centre, looking 50 degrees down; "flyover"
+// crosses the scene from south-west to north-east, looking ahead and down. Both stay above the highest box.
 std::vector<View> BuiltInPath(const scene::SceneInfo& info, const ProductOptions& options);
 
 }  // namespace skyquilt::products

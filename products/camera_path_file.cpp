@@ -80,11 +80,6 @@ class Entry {
   size_t index_;
 };
 
-// Point on a uniform Catmull-Rom curve (1974), at b for u = 0 and at c for u = 1.
-Eigen::Vector3d CatmullRom(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, const Eigen::Vector3d& d, double u) {
-  return 0.5 * (2.0 * b + u * (c - a) + u * u * (2.0 * a - 5.0 * b + 4.0 * c - d) + u * u * u * (3.0 * b - 3.0 * c + d - a));
-}
-
 std::vector<KeyFrame> Interpolate(const std::vector<KeyFrame>& keys, int frames_between) {
   if (frames_between == 0 || keys.size() < 2) return keys;
   std::vector<KeyFrame> frames;

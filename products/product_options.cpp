@@ -3,12 +3,17 @@
 #include <charconv>
 
 #include "core/base/errors.h"
+#include "products/product_kinds.h"
 
 namespace skyquilt::products {
 std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
   using config::Range;
   using O = ProductOptions;
   return {
+      {"kinds", &O::kinds, Range(),
+       "what is made: auto, all, or some of ortho, dsm, terrain, buildings, video and elevations, separated by commas; auto: where photos look "
+       "level, "
+       "elevations of walls and a video along the cameras, otherwise all but elevations"},
       {"ortho", &O::ortho, Range(), "make the orthophoto"},
       {"dsm", &O::dsm, Range(), "make the digital surface model"},
       {"preview", &O::preview, Range(),
@@ -25,7 +30,8 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
        "are always above the ellipsoid"},
       {"boundary", &O::boundary, Range(),
        "file with polygons (GeoJSON or GeoPackage) that limit orthophoto, surface model, mesh, cloud, tiles and terrain; empty: the whole scene"},
-      {"video_path", &O::video_path, Range::OneOf({"orbit", "flyover"}), "camera path of the video: orbit circles the scene, flyover crosses it"},
+      {"video_path", &O::video_path, Range::OneOf({"orbit", "flyover", "cameras"}),
+       "camera path of the video: orbit circles the scene, flyover crosses it, cameras follows the photos"},
       {"video_seconds", &O::video_seconds, Range{0, 3600}, "length of the video in seconds; 0: no video"},
       {"video_fps", &O::video_fps, Range{1, 120}, "frames per second of the video"},
       {"video_width", &O::video_width, Range{16, 16384}.MultipleOf(2), "width of the video in pixels; even, as H.264 requires"},
@@ -41,6 +47,7 @@ void ProductOptions::Check() const {
   config::CheckRanges("products", *this);
   // A number is one of stops; anything else may be the name of a photo, which only the survey knows.
   ExposureStops(exposure);
+  KindsOf(kinds, false);
 }
 
 std::optional<double> ExposureStops(const std::string& exposure) {

@@ -13,6 +13,7 @@ namespace skyquilt::products {
 constexpr int kPreviewWidth = 1600;
 
 struct ProductOptions {
+  std::string kinds = "auto";  // auto, all, or names separated by commas (products/product_kinds.h)
   bool ortho = true;
   bool dsm = true;
   bool preview = true;                 // make previews of the orthophoto before the scene is trained (products/preview_files.h)
@@ -22,7 +23,7 @@ struct ProductOptions {
   std::string exposure = "normal";     // or stops above it, or the name of a photo; for images, video and orthophoto
   std::string vertical = "as-tagged";  // what heights of maps, surface and buildings are above: as-tagged, ellipsoid or egm96
   std::string boundary;                // GeoJSON or GeoPackage with polygons that limit all products; empty: the whole scene
-  std::string video_path = "orbit";    // "orbit" or "flyover"
+  std::string video_path = "orbit";    // "orbit", "flyover" or "cameras"
   double video_seconds = 5.0;          // 0: no video
   int video_fps = 12;
   int video_width = 480;  // pixels; even, as H.264 requires

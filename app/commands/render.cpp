@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "core/scene/scene.h"
 #include "products/camera_path.h"
+#include "products/elevation.h"
 #include "products/map_products.h"
 #include "products/render_views.h"
 
@@ -25,12 +26,14 @@ struct RenderFlags {
   bool video = false;
   bool ortho = false;
   bool dsm = false;
+  std::string plane;  // of elevations: auto or the numbers of one; empty: none
   bool no_depth = false;
   std::string normals;  // kind; empty: none
   bool restart = false;
 
   bool Views() const { return !photos.empty() || test || (!path.empty() && !video); }
-  bool Anything() const { return !photos.empty() || test || !path.empty() || video || ortho || dsm; }
+  bool Anything() const { return !photos.empty() || test || !path.empty() || video || Maps(); }
+  bool Maps() const { return ortho || dsm || !plane.empty(); }
 };
 
 // The scene to render, and its project if it is inside one.
@@ -67,15 +70,19 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
   const products::ViewRenderer renderer = products::RendererOf(scene, appearance, threads);
   const int path_width = flags.width > 0 ? flags.width / 2 * 2 : options.video_width;
   const int path_height = std::max(2, path_width * options.video_height / options.video_width / 2 * 2);
+  const bool along_cameras = flags.video && flags.path.empty() && options.video_path == "cameras";
+  const bool needs_survey = !flags.photos.empty() || flags.test || flags.plane == "auto" || along_cameras;
+  std::optional<survey::Survey> survey;
+  if (needs_survey && !target.project) {
+    throw base::UsageError(
+        "--photo, --test, --plane auto and a video along the cameras need the survey: give the project folder, or a scene.h5 inside its project");
+  }
+  if (target.project && (needs_survey || !flags.plane.empty())) survey = survey::LoadSurvey(target.project->SurveyFolder());
   if (!flags.photos.empty() || flags.test) {
-    if (!target.project) {
-      throw base::UsageError("--photo and --test need the survey: give the project folder, or a scene.h5 inside its project");
-    }
-    const survey::Survey survey = survey::LoadSurvey(target.project->SurveyFolder());
     std::vector<products::View> views;
-    if (flags.test) views = products::ViewsOfPhotos(survey, {}, flags.width);
+    if (flags.test) views = products::ViewsOfPhotos(*survey, {}, flags.width);
     if (!flags.photos.empty()) {
-      const std::vector<products::View> named = products::ViewsOfPhotos(survey, flags.photos, flags.width);
+      const std::vector<products::View> named = products::ViewsOfPhotos(*survey, flags.photos, flags.width);
       views.insert(views.end(), named.begin(), named.end());
     }
     LogStats(products::RenderViews(renderer, views, renders, images, threads), renders);
@@ -96,7 +103,8 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     video.video_height = path_height;
     std::filesystem::create_directories(renders);
     const std::filesystem::path file = renders / (options.video_path + ".mp4");
-    LogStats(products::RenderVideo(renderer, products::BuiltInPath(scene.info(), video), options.video_fps, file), file);
+    const std::vector<products::View> views = along_cameras ? products::PathAlongCameras(*survey, video) : products::BuiltInPath(scene.info(), video);
+    LogStats(products::RenderVideo(renderer, views, options.video_fps, file), file);
   }
   if (flags.ortho || flags.dsm) {
     products::ProductOptions asked = options;
@@ -105,6 +113,16 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     const products::MapProducts made = products::MakeMapProducts(scene, asked, maps, threads);
     base::LogInfo("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", made.grid.width, made.grid.height, made.grid.resolution_m,
                   100.0 * made.filled, maps.string());
+  }
+  if (!flags.plane.empty()) {
+    const products::RayCaster caster = products::CasterOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads);
+    const int image_width = settings.run.image_width;
+    if (flags.plane == "auto") {
+      products::WriteElevationsOfWalls(scene.info(), *survey, caster, options, image_width, maps, !flags.no_depth);
+    } else {
+      const products::ElevationPlane plane = products::StatedElevation(flags.plane, scene.info(), survey ? &*survey : nullptr, options, image_width);
+      products::WriteElevation(plane, scene.info(), caster, options, maps, !flags.no_depth);
+    }
   }
 }
 
@@ -117,7 +135,8 @@ void Render(const CommandState& state, const RenderFlags& flags, const std::vect
   const Target target = FindTarget(flags.target);
   coordinator::Settings settings = state.Load(target.project ? ProjectConfig(*target.project) : std::vector<std::filesystem::path>{}, overrides);
   if (!flags.Anything()) {
-    if (!target.project) throw base::UsageError("nothing to render from " + flags.target + " was chosen. Give --path, --video, --ortho or --dsm");
+    if (!target.project)
+      throw base::UsageError("nothing to render from " + flags.target + " was chosen. Give --path, --video, --ortho, --dsm or --plane");
     coordinator::Pipeline pipeline = state.Begin(*target.project, std::move(settings), flags.restart);
     coordinator::ProductsStage(pipeline);
     return;
@@ -125,7 +144,7 @@ void Render(const CommandState& state, const RenderFlags& flags, const std::vect
   const std::filesystem::path folder = std::filesystem::absolute(target.scene).lexically_normal().parent_path();
   const std::filesystem::path renders = flags.out.empty() ? folder / "renders" : std::filesystem::path(flags.out);
   const std::filesystem::path maps = flags.out.empty() ? folder / "products" : std::filesystem::path(flags.out);
-  base::RequireWritableFolder(flags.ortho || flags.dsm ? maps : renders);
+  base::RequireWritableFolder(flags.Maps() ? maps : renders);
   coordinator::SceneSession session(*state.comm, target.scene, settings.run, state.verbose, state.quiet);
   RenderAsked(flags, target, settings, session, renders, maps);
 }
@@ -135,7 +154,7 @@ void Render(const CommandState& state, const RenderFlags& flags, const std::vect
 void AddRender(CLI::App& app, CommandState& state) {
   const auto flags = std::make_shared<RenderFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
-  CLI::App* command = app.add_subcommand("render", "render images, depth, video, orthophoto and surface model of a scene");
+  CLI::App* command = app.add_subcommand("render", "render images, depth, video, orthophoto, surface model and elevations of a scene");
   command->add_option("scene", flags->target, "project folder or scene.h5")->required()->type_name("PATH");
   command->add_option("--photo", flags->photos, "render the view of this photo; may be repeated")->type_name("NAME")->expected(1)->take_all();
   command->add_flag("--test", flags->test, "render the views of all held-out photos");
@@ -143,6 +162,12 @@ void AddRender(CLI::App& app, CommandState& state) {
   command->add_flag("--video", flags->video, "make an MP4 video along --path, or along the built-in path of [products]");
   command->add_flag("--ortho", flags->ortho, "make the orthophoto as GeoTIFF");
   command->add_flag("--dsm", flags->dsm, "make the surface model as GeoTIFF");
+  command
+      ->add_option(
+          "--plane", flags->plane,
+          "draw elevations, straight on vertical planes: auto finds the walls; or x,y,z,azimuth[,width,height], the middle of the picture, to "
+          "where the wall looks (degrees clockwise from north) and the size")
+      ->type_name("PLANE");
   command->add_flag("--no-depth", flags->no_depth, "do not write depth images");
   command->add_option("--normals", flags->normals, "also write the surface normals of the views: depth (the default), density or predicted")
       ->type_name("KIND")
@@ -150,7 +175,7 @@ void AddRender(CLI::App& app, CommandState& state) {
       ->default_str("depth");
   AddOptionFlag(*command, overrides, "--exposure", "products.exposure",
                 "exposure of the images: normal, a number of stops above it, or a photo's name to use its exposure");
-  AddOptionFlag(*command, overrides, "--resolution", "products.resolution_m", "cell size of orthophoto and surface model in metres");
+  AddOptionFlag(*command, overrides, "--resolution", "products.resolution_m", "cell size of orthophoto, surface model and elevations in metres");
   AddBoundaryFlag(*command, overrides);
   AddMemoryFlag(*command, overrides);
   command->add_option("--width", flags->width, "image width in pixels; 0: size of the photos, with --path and --video products.video_width")
@@ -164,7 +189,9 @@ void AddRender(CLI::App& app, CommandState& state) {
       "  skyquilt render out --test --width 1000\n"
       "  skyquilt render out --photo IMG_0007.jpg --exposure 1\n"
       "  skyquilt render out/scene.h5 --path flight.json --video -o movie\n"
-      "  skyquilt render out --ortho --dsm --resolution 0.05");
+      "  skyquilt render out --ortho --dsm --resolution 0.05\n"
+      "  skyquilt render out --plane auto\n"
+      "  skyquilt render out --plane 12.5,3,8,180,40,16 --resolution 0.01");
   command->callback([&state, flags, overrides] { state.run_command = [&state, flags, overrides] { Render(state, *flags, *overrides); }; });
 }
 

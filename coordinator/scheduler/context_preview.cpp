@@ -10,7 +10,9 @@
 #include "core/image/srgb.h"
 #include "core/render/ray_engine.h"
 #include "core/scene/field_file.h"
+#include "core/survey/view_kind.h"
 #include "products/field_preview.h"
+#include "products/product_kinds.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -63,6 +65,7 @@ void Make(const survey::Survey& survey, const partition::BlockSet& blocks, const
 
 void ProvideContextPreview(const survey::Survey& survey, const partition::BlockSet& blocks, const Settings& settings, const Project& project,
                            double seconds, base::ThreadPool& threads) {
+  if (!products::KindsOf(settings.products.kinds, survey::LooksLevel(survey)).ortho) return;
   AsPreview(settings, project, "preview of the orthophoto from the context", [&](const std::filesystem::path& folder) {
     if (!products::FindPreview(folder, products::kFromContext)) Make(survey, blocks, settings, project, seconds, threads);
   });

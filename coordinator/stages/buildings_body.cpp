@@ -90,7 +90,9 @@ std::string BuildingsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   } else {
     const std::filesystem::path terrain = project.SurfaceFolder() / "dtm.tif";
     if (!std::filesystem::exists(terrain)) {
-      throw base::InputError(terrain, "no such file", "Run 'skyquilt surface' with --restart and --set surface.maps=true");
+      throw base::InputError(terrain, "no such file",
+                             KindsOf(pipeline).terrain ? "Run 'skyquilt surface' with --restart and --set surface.maps=true"
+                                                       : "Run 'skyquilt surface' with --restart and --set products.kinds=all");
     }
     if (gis::ReadUndulations(terrain) != frame.heights().undulations()) {
       throw base::InputError(terrain, "has other heights than products.vertical = \"" + settings.products.vertical + "\" gives",

@@ -3,12 +3,15 @@
 #include "coordinator/project/stamp.h"
 #include "coordinator/scheduler/preview_guard.h"
 #include "core/base/log.h"
+#include "core/survey/view_kind.h"
 #include "products/point_preview.h"
+#include "products/product_kinds.h"
 
 namespace skyquilt::coordinator {
 
 void MakeFirstPicture(const Pipeline& pipeline, const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known,
                       base::ThreadPool& threads) {
+  if (!products::KindsOf(pipeline.settings.products.kinds, survey::LooksLevel(survey)).ortho) return;
   AsPreview(pipeline.settings, pipeline.project, "preview of the orthophoto", [&](const std::filesystem::path& folder) {
     const products::PointPreview preview = products::MakePointPreview(survey, pipeline.settings.products, folder, threads);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - poses_known).count();

@@ -2,10 +2,20 @@
 
 #include "coordinator/stages/first_picture.h"
 #include "coordinator/stages/stage.h"
+#include "coordinator/stages/stage_bodies.h"
 #include "core/base/errors.h"
+#include "core/base/log.h"
 #include "core/base/text.h"
 
 namespace skyquilt::coordinator {
+namespace {
+
+void LogLevelPhotos(const products::ProductKinds& kinds) {
+  base::LogInfo("photos look level: made are {} instead of orthophoto, surface model, terrain and buildings (products.kinds = auto)",
+                products::NamesOf(kinds));
+}
+
+}  // namespace
 
 void SimulateStage(Pipeline& pipeline, const std::filesystem::path& folder) {
   Pipeline own{.comm = pipeline.comm, .project = Project::Create(folder), .settings = pipeline.settings};
@@ -60,11 +70,16 @@ const evaluate::metrics::Metrics& EvaluateStage(Pipeline& pipeline) {
 
 void RunStages(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model) {
   const std::filesystem::path folder = photos.empty() ? pipeline.project.SimulatedFolder() : photos;
+  products::ProductKinds kinds;
   for (const Stage& stage : Stages()) {
     if (stage.name == "simulate") {
       if (photos.empty()) SimulateStage(pipeline, folder);
     } else if (stage.name == "prepare") {
       PrepareStage(pipeline, folder, model);
+      kinds = KindsOf(pipeline);
+      if (kinds.along_cameras) LogLevelPhotos(kinds);
+    } else if (stage.name == "buildings" && !kinds.buildings) {
+      continue;
     } else if (stage.wanted == nullptr || stage.wanted(pipeline.settings)) {
       RunStage(pipeline, stage.name);
     }

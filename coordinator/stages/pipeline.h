@@ -47,7 +47,7 @@ void PartitionStage(Pipeline& pipeline);
 // Blocks that failed after all their tries have ok = false in the report; the others are finished and saved.
 const scene::TrainReport& TrainStage(Pipeline& pipeline);
 void MergeStage(Pipeline& pipeline);
-// Makes orthophoto, surface model and video, as chosen in [products].
+// Makes orthophoto, surface model, elevations and video, as chosen in [products].
 void ProductsStage(Pipeline& pipeline);
 // Makes mesh, point cloud, tiles and terrain, as chosen in [surface].
 void SurfaceStage(Pipeline& pipeline);

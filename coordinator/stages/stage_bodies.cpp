@@ -10,12 +10,14 @@
 #include "core/base/log.h"
 #include "core/base/thread_pool.h"
 #include "core/scene/scene.h"
+#include "core/survey/view_kind.h"
 #include "evaluate/evaluate.h"
 #include "merge/merge.h"
 #include "partition/altitude.h"
 #include "partition/make_blocks.h"
 #include "prepare/prepare.h"
 #include "products/camera_path.h"
+#include "products/elevation.h"
 #include "products/map_products.h"
 #include "products/render_views.h"
 #include "products/video_writer.h"
@@ -51,6 +53,13 @@ std::string ScoresKey(const Pipeline& pipeline, const StageStamp& stamp) {
 }
 
 }  // namespace
+
+products::ProductKinds KindsOf(const Pipeline& pipeline) {
+  const std::string& kinds = pipeline.settings.products.kinds;
+  const std::filesystem::path folder = pipeline.project.SurveyFolder();
+  const bool level = kinds == "auto" && std::filesystem::exists(folder / "survey.json") && survey::LooksLevel(survey::LoadSurvey(folder));
+  return products::KindsOf(kinds, level);
+}
 
 std::string SimulateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   base::ThreadPool threads(pipeline.settings.run.threads);
@@ -124,7 +133,15 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 }
 
 std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
-  const products::ProductOptions& options = pipeline.settings.products;
+  const products::ProductKinds kinds = KindsOf(pipeline);
+  products::ProductOptions options = pipeline.settings.products;
+  options.ortho = options.ortho && kinds.ortho;
+  options.dsm = options.dsm && kinds.dsm;
+  if (!kinds.video) options.video_seconds = 0.0;
+  if (kinds.along_cameras) options.video_path = "cameras";
+  const bool along_cameras = options.video_seconds > 0.0 && options.video_path == "cameras";
+  survey::Survey survey;
+  if (kinds.elevations || along_cameras) survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
   const std::filesystem::path folder = pipeline.project.ProductsFolder();
   SceneSession session(pipeline.comm, pipeline.project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
   const scene::Scene& scene = session.scene();
@@ -135,15 +152,20 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
     base::LogInfo("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", maps.grid.width, maps.grid.height, maps.grid.resolution_m,
                   100.0 * maps.filled, folder.string());
   }
+  const scene::Appearance appearance = products::AppearanceOf(options.exposure, scene.info());
+  if (kinds.elevations) {
+    products::WriteElevationsOfWalls(scene.info(), survey, products::CasterOf(scene, appearance, threads), options, pipeline.settings.run.image_width,
+                                     folder, true);
+  }
   if (options.video_seconds > 0.0 && !products::CanWriteVideos()) {
     base::LogWarning(
         "no video was made: the program ffmpeg is not installed. Install it (Debian, Ubuntu: apt install ffmpeg), then: skyquilt render {} --video",
         pipeline.project.folder.string());
   } else if (options.video_seconds > 0.0) {
     const std::filesystem::path file = folder / (options.video_path + ".mp4");
-    const products::RenderStats stats =
-        products::RenderVideo(products::RendererOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads),
-                              products::BuiltInPath(scene.info(), options), options.video_fps, file);
+    const std::vector<products::View> views =
+        along_cameras ? products::PathAlongCameras(survey, options) : products::BuiltInPath(scene.info(), options);
+    const products::RenderStats stats = products::RenderVideo(products::RendererOf(scene, appearance, threads), views, options.video_fps, file);
     base::LogInfo("video of {} frames, {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), file.string());
   }
   return StageStamp::kDone;

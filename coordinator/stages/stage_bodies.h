@@ -5,6 +5,7 @@
 
 #include "coordinator/project/stamp.h"
 #include "coordinator/stages/pipeline.h"
+#include "products/product_kinds.h"
 
 namespace skyquilt::coordinator {
 
@@ -18,6 +19,9 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string BuildingsBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string TourBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp);
+
+// What products.kinds gives for the pipeline's survey; photos look down where there is no survey.
+products::ProductKinds KindsOf(const Pipeline& pipeline);
 
 // Identity of a tour that a person made or changed; "" when there is none, so that a proposed one can be proposed again.
 std::string EditedTourIdentity(const Project& project);

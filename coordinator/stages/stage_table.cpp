@@ -89,9 +89,20 @@ void AddVertical(const Pipeline& pipeline, FlatOptions* inputs) {
   if (vertical != products::ProductOptions().vertical) (*inputs)["vertical"] = vertical;
 }
 
+// The kinds of products that stage "products" makes; what photos that look down give is what older programs gave, and is left out.
+void AddKinds(const Pipeline& pipeline, FlatOptions* inputs) {
+  const auto made = [](products::ProductKinds kinds) {
+    kinds.terrain = kinds.buildings = false;  // by other stages
+    return products::NamesOf(kinds);
+  };
+  const std::string kinds = made(KindsOf(pipeline));
+  if (kinds != made(products::KindsOf("auto", false))) (*inputs)["kinds"] = kinds;
+}
+
 FlatOptions ProductInputs(const Pipeline& pipeline) {
   FlatOptions inputs{{"scene", FileIdentity(pipeline.project.StampFile("merge"))}, {"boundary", BoundaryIdentity(pipeline)}};
   AddVertical(pipeline, &inputs);
+  AddKinds(pipeline, &inputs);
   return inputs;
 }
 
@@ -100,6 +111,7 @@ FlatOptions SurfaceInputs(const Pipeline& pipeline) {
                      {"survey", SurveyIdentity(pipeline.project)},
                      {"boundary", BoundaryIdentity(pipeline)}};
   AddVertical(pipeline, &inputs);
+  if (!KindsOf(pipeline).terrain) inputs["terrain"] = "none";
   return inputs;
 }
 
@@ -219,9 +231,9 @@ std::vector<Stage> MakeTable() {
        .body = MergeBody},
       {.name = "products",
        .options = {"products."},
-       // The boundary's content and the vertical system are inputs, so that others make the products again. Previews are made before, by other
-       // stages.
-       .ignored_options = {"products.boundary", "products.preview", "products.vertical"},
+       // The boundary's content, the vertical system and the kinds that are made are inputs, so that others make the products again. Previews are
+       // made before, by other stages.
+       .ignored_options = {"products.boundary", "products.preview", "products.vertical", "products.kinds"},
        .required = {{SceneFile, "merge"}},
        .inputs = ProductInputs,
        .outputs =

@@ -25,6 +25,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   const gis::MapGrid grid = products::PlanMapGrid(scene.info(), settings.products);
   surface::SurfaceInput input;
   input.options = settings.surface;
+  input.options.maps = settings.surface.maps && KindsOf(pipeline).terrain;
   input.info = &scene.info();
   input.survey = &survey;
   input.caster = products::CasterOf(scene, products::AppearanceOf(settings.products.exposure, scene.info()), session.threads());

@@ -12,6 +12,7 @@
 #include "evaluate/metrics/training_curve.h"
 #include "evaluate/page/brightness_report.h"
 #include "evaluate/page/drawn_map.h"
+#include "evaluate/page/elevation_section.h"
 #include "evaluate/page/input_files.h"
 #include "partition/block.h"
 
@@ -45,8 +46,9 @@ struct ReportInput {
   std::vector<PhotoImages> images;                        // entry i belongs to metrics->photos[i]
   std::vector<control::MarkPicture> mark_pictures;        // of the survey's control points, in their order
   std::optional<MapBackground> background;
-  std::string color_ramp;    // picture of the colour map from low to high, relative to the page; empty: no legend
-  double error_high = 0.25;  // display values at the top of the error colours
+  std::vector<ElevationPicture> elevations;  // none: no such section
+  std::string color_ramp;                    // picture of the colour map from low to high, relative to the page; empty: no legend
+  double error_high = 0.25;                  // display values at the top of the error colours
 };
 
 std::string BuildReportPage(const ReportInput& input);

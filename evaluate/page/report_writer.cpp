@@ -32,6 +32,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
   if (page.background) kept.insert(page.background->image);
   for (const PhotoImages& one : page.images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh});
   for (const control::MarkPicture& one : page.mark_pictures) kept.insert({one.photo, one.render});
+  for (const ElevationPicture& one : page.elevations) kept.insert(one.image);
   if (found != nullptr) {
     for (const buildings::BuildingPicture& one : found->pictures) kept.insert(one.file);
   }
@@ -39,7 +40,8 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
     const std::string name = entry.path().filename().string();
-    const bool ours = name.starts_with("photo_") || name.starts_with("building_") || name.starts_with("control_") || name.starts_with("preview_");
+    const bool ours = name.starts_with("photo_") || name.starts_with("building_") || name.starts_with("elevation_") || name.starts_with("control_") ||
+                      name.starts_with("preview_");
     if (ours && !kept.contains("images/" + name)) stale.push_back(entry.path());
   }
   for (const std::filesystem::path& file : stale) std::filesystem::remove(file, ignored);
@@ -121,6 +123,7 @@ void WriteReport(const EvaluateInput& input, const metrics::Metrics& metrics, co
   }
   page.buildings = found;
   page.background = CopyMapBackground(input.project_folder / "products", report_folder);
+  page.elevations = CopyElevations(input.project_folder / "products", report_folder);
   page.color_ramp = WriteColorRamp(report_folder);
   page.error_high = static_cast<double>(kErrorHigh);
   base::WriteFileAtomically(report_folder / "index.html", BuildReportPage(page));

@@ -52,6 +52,33 @@ TEST(PoseLookingAt, PutsTheTargetOnTheAxis) {
   }
 }
 
+TEST(PathAlongCameras, FollowsTrainingPhotosInTheirOrder) {
+  survey::Survey survey;
+  for (int i = 0; i < 21; ++i) {
+    survey::Photo photo;
+    const Eigen::Vector3d eye(i < 20 ? 20.0 - i : 500.0, 0.0, 2.0);
+    photo.cam_from_enu = PoseFromAngles(eye, 0.0, 5.0, i % 2 == 0 ? 0.0 : 90.0);
+    photo.time_s = 20.0 - i;
+    photo.is_test = i == 20;
+    survey.photos.push_back(photo);
+  }
+  ProductOptions options;
+  options.video_seconds = 5.0;
+  options.video_fps = 12;
+  const std::vector<View> views = PathAlongCameras(survey, options);
+  ASSERT_EQ(views.size(), 60U);
+  EXPECT_TRUE(views.front().cam_from_enu.OriginInSource().isApprox(Eigen::Vector3d(1, 0, 2), 1e-9)) << "the first that was taken";
+  EXPECT_TRUE(views.back().cam_from_enu.OriginInSource().isApprox(Eigen::Vector3d(20, 0, 2), 1e-9));
+  for (size_t i = 0; i < views.size(); ++i) {
+    const Eigen::Vector3d eye = views[i].cam_from_enu.OriginInSource();
+    EXPECT_NEAR(eye.y(), 0.0, 1e-9);
+    if (i > 0) EXPECT_GT(eye.x(), views[i - 1].cam_from_enu.OriginInSource().x());
+    EXPECT_TRUE(views[i].cam_from_enu.rotation.isApprox(PoseFromAngles(eye, 0.0, 5.0, 0.0).rotation, 1e-6)) << "level, whatever the photos' roll";
+  }
+  survey.photos.resize(1);
+  EXPECT_EQ(PathAlongCameras(survey, options).size(), 60U) << "one photo";
+}
+
 TEST(BuiltInPath, StaysAboveTheRoofsAndLooksAtTheScene) {
   const AnalyticScene scene;
   const scene::SceneInfo info = scene.Info({41.0, 2.0, 0.0}, true);

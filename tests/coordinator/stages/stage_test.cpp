@@ -77,6 +77,23 @@ TEST_F(StageFiles, AnotherVerticalSystemIsANewInput) {
   }
 }
 
+TEST_F(StageFiles, OtherKindsOfProductsAreANewInput) {
+  const auto comm = comm::ConnectAlone();
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
+  const Stage& products = StageNamed("products");
+  const Stage& surface = StageNamed("surface");
+  EXPECT_FALSE(products.inputs(pipeline).contains("kinds"));
+  EXPECT_FALSE(surface.inputs(pipeline).contains("terrain"));
+  Settings before = pipeline.settings;
+  pipeline.settings.products.kinds = "elevations,terrain";
+  EXPECT_EQ(products.inputs(pipeline).at("kinds"), "elevations of walls");
+  EXPECT_FALSE(surface.inputs(pipeline).contains("terrain"));
+  pipeline.settings.products.kinds = "ortho,dsm,video";
+  EXPECT_FALSE(products.inputs(pipeline).contains("kinds"));
+  EXPECT_EQ(surface.inputs(pipeline).at("terrain"), "none");
+  EXPECT_EQ(StageOptions(products, before), StageOptions(products, pipeline.settings));
+}
+
 // Surveys of programs without the option stay valid as long as it has its default; another value is an input that has changed.
 TEST_F(StageFiles, PosesOfHeldOutPhotosAreAnInputWhereTheyAreNotTheDefault) {
   const auto comm = comm::ConnectAlone();

@@ -18,7 +18,6 @@
 #include "core/base/order_statistics.h"
 #include "core/base/progress.h"
 #include "core/image/draw_text.h"
-#include "core/image/encode.h"
 #include "products/cell_painter.h"
 #include "products/map_rays.h"
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/base/order_statistics.h"
+#include "core/survey/view_kind.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -22,15 +22,6 @@ constexpr double kNearestShare = 0.02;  // of a photo's points: so many may be w
 constexpr double kAboveHorizon = 0.03;
 constexpr float kSkyBrightness = 0.45F, kSkyBlue = 1.0F;
 
-bool LookLevel(const survey::Survey& survey, const std::vector<int>& photos) {
-  std::vector<double> down;
-  for (const int photo : photos) {
-    const survey::Photo& p = survey.photos[static_cast<size_t>(photo)];
-    if (!p.is_test) down.push_back(std::abs((p.cam_from_enu.rotation.conjugate() * Eigen::Vector3d::UnitZ()).z()));
-  }
-  return !down.empty() && base::UpperMedian(down) < std::sin(PointRanges::kLevel_deg * std::numbers::pi / 180.0);
-}
-
 size_t IndexOf(int row, int column) {
   return static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column);
 }
@@ -42,7 +33,7 @@ bool PointRanges::Range::Known() const {
 }
 
 PointRanges::PointRanges(const survey::Survey& survey, const RaySource& source, const std::vector<int>& photos, base::ThreadPool& threads) {
-  if (survey.tracks.Empty() || !LookLevel(survey, photos)) return;
+  if (survey.tracks.Empty() || !survey::LooksLevel(survey, photos)) return;
   first_.assign(survey.photos.size(), -1);
   std::vector<int> training;
   for (const int photo : photos) {

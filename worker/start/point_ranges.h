@@ -14,9 +14,6 @@ namespace skyquilt::worker {
 
 class PointRanges {
  public:
-  // Photos look level when the axes of half of them are within this angle of the horizon.
-  static constexpr double kLevel_deg = 30.0;
-
   struct Range {
     float near = 0.0F;     // half the distance of the nearest point around the tile, or of the photo's nearest points where none is around it
     float nearest = 0.0F;  // of the points around the tile; infinite: none
@@ -27,7 +24,8 @@ class PointRanges {
   };
 
   PointRanges() = default;  // Empty()
-  // Of the training photos among `photos`. Empty where these look down, and for surveys without tracks. Observations in held-out photos do not count.
+  // Of the training photos among `photos`. Empty unless these look level (survey::LooksLevel), and for surveys without tracks. Observations in
+  // held-out photos do not count.
   PointRanges(const survey::Survey& survey, const RaySource& source, const std::vector<int>& photos, base::ThreadPool& threads);
 
   bool Empty() const { return ranges_.empty(); }

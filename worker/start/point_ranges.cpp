@@ -21,6 +21,7 @@ constexpr double kNearestShare = 0.02;  // of a photo's points: so many may be w
 // Sky is at least this high above the horizon (sine), this bright, and blue at least by this part of red. Ceilings under lamps are reddish.
 constexpr double kAboveHorizon = 0.03;
 constexpr float kSkyBrightness = 0.45F, kSkyBlue = 1.0F;
+constexpr float kSkyStep = 0.12F;  // largest difference to the tile above it, of a colour
 
 size_t IndexOf(int row, int column) {
   return static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column);
@@ -81,6 +82,7 @@ void PointRanges::FindRanges(const survey::Survey& survey, const RaySource& sour
     for (int column = 0; column < kTileColumns; ++column) {
       Range& range = ranges_[static_cast<size_t>(first_[static_cast<size_t>(photo)]) + IndexOf(row, column)];
       range = {near, kInfinity, 0.0F, kInfinity, false};
+      bool close = false;
       for (const int reach : kReaches) {
         for (int y = std::max(0, row - reach); y <= std::min(kTileRows - 1, row + reach); ++y) {
           for (int x = std::max(0, column - reach); x <= std::min(kTileColumns - 1, column + reach); ++x) {
@@ -89,10 +91,12 @@ void PointRanges::FindRanges(const survey::Survey& survey, const RaySource& sour
           }
         }
         if (range.farthest <= 0.0F) continue;
+        close = reach == kReaches.front();
         range.near = kNearSlack * range.nearest;
         range.far = kFarSlack * range.farthest;
         break;
       }
+      range.sky = !close;  // so far: it may be
     }
   }
 }
@@ -112,13 +116,17 @@ void PointRanges::FindSky(const RaySource& source, int photo) {
   const bool from_first = (along_rows ? by_row : by_column) > 0.0;
   const int lines = along_rows ? kTileColumns : kTileRows, length = along_rows ? kTileRows : kTileColumns;
   for (int line = 0; line < lines; ++line) {
+    bool sky = true;
+    Eigen::Vector3f above;
     for (int i = 0; i < length; ++i) {
       const int step = from_first ? i : length - 1 - i;
       const int row = along_rows ? step : line, column = along_rows ? line : step;
       const Eigen::Vector3f& srgb = colors[IndexOf(row, column)];
       Range& range = ranges[IndexOf(row, column)];
-      if (range.Known() || !(rise(row, column) > kAboveHorizon) || !(srgb.mean() >= kSkyBrightness) || !(srgb.z() >= kSkyBlue * srgb.x())) break;
-      range.sky = true;
+      sky = sky && range.sky && rise(row, column) > kAboveHorizon && srgb.mean() >= kSkyBrightness && srgb.z() >= kSkyBlue * srgb.x() &&
+            (i == 0 || (srgb - above).cwiseAbs().maxCoeff() <= kSkyStep);
+      range.sky = sky;
+      above = srgb;
     }
   }
 }

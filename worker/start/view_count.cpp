@@ -14,7 +14,7 @@ namespace skyquilt::worker {
 std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
                                        const scene::HeightMap& surface, const PointRanges& ranges, int min_views, base::ThreadPool& threads) {
   std::vector<Tile> all = TrainingTiles(survey, photos);
-  if (surface.Empty() || min_views < 2) return all;
+  if ((surface.Empty() && ranges.Empty()) || min_views < 2) return all;
   const ViewCounter counter(survey, photos, [&source](int photo) -> const camera::Camera& { return source.CameraOf(photo); });
   std::vector<uint8_t> enough(all.size(), 0);
   constexpr size_t kManyPhotos = 1000;  // from which this takes seconds

@@ -262,7 +262,11 @@ def check_unfinished(skyquilt, project, survey, folder):
         expect(description["scene"] is None and description["tiles"] is None and description["photos"], "a project in training")
         what = {one["what"]: one for one in description["missing"]}
         expect(what and all(one["reason"] and one["advice"] for one in what.values()), f"{description['missing']}")
-        socket = viewer.socket()
+        for _ in range(100):  # until the engine has looked for a scene
+            socket = viewer.socket()
+            if "loaded" not in json.dumps(socket.welcome["engine"]):
+                break
+            time.sleep(0.1)
         expect(not socket.welcome["engine"]["ready"] and "train" in json.dumps(socket.welcome["engine"]), f"{socket.welcome}")
         socket.send({"type": "pick", "id": 7, "project": "main", "origin": [0, 0, 100], "direction": [0, 0, -1], "pixel_pitch": 0.001, "pixel_width_m": 0})
         while True:

@@ -12,15 +12,18 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "core/survey/view_kind.h"
 #include "surface/fusion/fuse.h"
 #include "surface/map_frame.h"
 #include "surface/mesh/simplify.h"
 #include "surface/tile_store.h"
+#include "surface/views/see_through.h"
 
 namespace skyquilt::surface {
 namespace {
 
-constexpr double kLargestGrowth = 3.0;  // of voxels when the memory is short
+constexpr double kLargestGrowth = 3.0;   // of voxels when the memory is short
+constexpr double kOffPlaneVoxels = 3.0;  // of the border of a hole that is closed in its plane
 
 int FloorDivide(int value, int by) {
   return value >= 0 ? value / by : -((by - 1 - value) / by);
@@ -204,13 +207,23 @@ FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double vo
     throw base::UsageError("products.boundary leaves nothing of the surface: the boundary does not meet it. Give a polygon that does, or none");
   }
   const int islands = DropIslands(&mesh, input.options.min_island_m2);
-  result.filled_m2 = FillGroundHoles(&mesh, kMaxHole_m2, 4.0 * result.voxel_m);
+  const double spacing_m = 4.0 * result.voxel_m;
+  result.filled_m2 = FillGroundHoles(&mesh, kMaxHole_m2, spacing_m);
+  const bool level = survey::LooksLevel(*input.survey);
+  if (level) {
+    const std::vector<DepthView> pictures = views.All();
+    const double truncation_m = plan.fuse.truncation_voxels * result.voxel_m;
+    const auto is_open = [&](const Eigen::Vector3d& x, const Eigen::Vector3d& normal) { return SeesThrough(pictures, x, normal, truncation_m); };
+    result.filled_m2 += FillPlanarHoles(&mesh, kMaxHole_m2, spacing_m, kOffPlaneVoxels * result.voxel_m, is_open);
+    views.ReleasePages();
+  }
   result.edges = CountEdges(mesh);
   result.area_m2 = Area(mesh);
   result.tiles = SplitIntoTiles(mesh, result.tile_size_m);
   for (MeshTile& tile : result.tiles) tile.error_m = error_m;
-  base::LogInfo("surface of {} triangles and {:.0f} m2 in {} tile(s); {} small piece(s) dropped, {:.0f} m2 of holes in the ground closed",
-                base::FormatCount(static_cast<double>(mesh.triangle.size())), result.area_m2, result.tiles.size(), islands, result.filled_m2);
+  base::LogInfo("surface of {} triangles and {:.0f} m2 in {} tile(s); {} small piece(s) dropped, {:.0f} m2 of holes{} closed",
+                base::FormatCount(static_cast<double>(mesh.triangle.size())), result.area_m2, result.tiles.size(), islands, result.filled_m2,
+                level ? "" : " in the ground");
   return result;
 }
 

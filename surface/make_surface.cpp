@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kWorkVersion = "2";  // of the files in the work folder
+constexpr const char* kWorkVersion = "3";  // of the files in the work folder
 
 fs::path TextureFolder(const fs::path& work_folder) {
   return work_folder / "textures";

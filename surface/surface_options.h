@@ -10,7 +10,7 @@ namespace skyquilt::surface {
 // Depths where the surface is seen at a larger angle from its normal are not used: along it, a pixel's depth spans many voxels.
 constexpr double kMaxAngle_deg = 85.0;
 // Holes in the ground up to this area are closed: those under cars and trees, which no photo sees. Larger ones stay open, as nothing tells their
-// ground.
+// ground. Where photos look level, so are holes in walls and ceilings.
 constexpr double kMaxHole_m2 = 30.0;
 // Largest error of the simplification, in voxels: below half a voxel the fused depths say nothing about the surface.
 constexpr double kSimplifyVoxels = 0.5;

@@ -1,7 +1,9 @@
 // Operations on whole meshes, and their edges with the triangles that use them.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -31,6 +33,16 @@ inline constexpr uint64_t kFilledKeyBit = uint64_t{1} << 5U;
 // least one new vertex, with filled = 1, views = 0 and a key with kFilledKeyBit, which no lattice vertex has. The mesh stays manifold. Returns the
 // area that was closed, square metres.
 double FillGroundHoles(Mesh* mesh, double max_area_m2, double spacing_m);
+// Whether photos see something farther through this place of a surface, whose normal is given (ENU, length 1).
+using IsOpenThere = std::function<bool(const Eigen::Vector3d& x_in_enu, const Eigen::Vector3d& normal_enu)>;
+// Closes holes in walls, roofs and ceilings, in the same way and marked as those in the ground: open borders of at most 2000 edges that
+//   - are nowhere further than off_plane_m from a plane (that of the least squares), and run around free space in it, with an area of at most
+//     max_area_m2, and do not cross or touch themselves or another border;
+//   - belong to triangles that mostly (70 % of the border's length) lie in it, with a normal within 60 degrees of the plane's;
+//   - have nothing of the mesh inside, within 2 off_plane_m of the plane;
+//   - are none that FillGroundHoles would close, or leaves open because of what lies above or below;
+//   - are not open at any new vertex, as is_open tells (null: nothing is).
+double FillPlanarHoles(Mesh* mesh, double max_area_m2, double spacing_m, double off_plane_m, const IsOpenThere& is_open);
 
 struct EdgeCounts {
   int64_t edges = 0;

@@ -39,21 +39,26 @@ void CoarseDepths::Add(const DepthView& view) {
   pictures_.push_back(std::move(picture));
 }
 
-bool CoarseDepths::Sees(size_t view, const Eigen::Vector3d& x_in_enu, double tolerance_m) const {
+std::optional<CoarseDepths::Look> CoarseDepths::LookAtPlace(size_t view, const Eigen::Vector3d& x_in_enu) const {
   const ViewPose& pose = poses_[view];
   const Picture& picture = pictures_[view];
   const std::optional<Eigen::Vector2d> at = pose.Project(x_in_enu);
-  if (!at || picture.depth_m.empty()) return false;
+  if (!at || picture.depth_m.empty()) return std::nullopt;
   const int column = std::min(static_cast<int>(at->x()) / step_, picture.width - 1),
             row = std::min(static_cast<int>(at->y()) / step_, picture.height - 1);
   const size_t i = static_cast<size_t>(row) * static_cast<size_t>(picture.width) + static_cast<size_t>(column);
   const auto depth = static_cast<double>(picture.depth_m[i]);
-  if (std::isnan(depth)) return false;
+  if (std::isnan(depth)) return std::nullopt;
   // The kept pixel is beside the place: on a slope its depth differs by that alone.
   const double offset_m = (*at - Eigen::Vector2d(PositionOf(column), PositionOf(row))).norm() * depth / pose.focal_px;
   const double cosine = CosineFromByte(picture.cosine[i]);
   const double slope = std::sqrt(1.0 - std::min(1.0, cosine * cosine)) / cosine;
-  return std::abs((x_in_enu - pose.Centre()).norm() - depth) < tolerance_m + offset_m * slope;
+  return Look{(x_in_enu - pose.Centre()).norm() - depth, offset_m * slope};
+}
+
+bool CoarseDepths::Sees(size_t view, const Eigen::Vector3d& x_in_enu, double tolerance_m) const {
+  const std::optional<Look> look = LookAtPlace(view, x_in_enu);
+  return look && std::abs(look->behind_m) < tolerance_m + look->slack_m;
 }
 
 std::vector<SurfaceSample> CoarseDepths::Samples(int64_t max_samples, double tolerance_m, base::ThreadPool& threads) const {
@@ -61,7 +66,6 @@ std::vector<SurfaceSample> CoarseDepths::Samples(int64_t max_samples, double tol
   for (const Picture& picture : pictures_) kept += static_cast<double>(picture.depth_m.size());
   const int stride = std::max(1, static_cast<int>(std::ceil(std::sqrt(kept / static_cast<double>(max_samples)))));
   std::vector<SurfaceSample> samples;
-  std::vector<size_t> source;  // the view of each sample
   for (size_t v = 0; v < pictures_.size(); ++v) {
     const Picture& picture = pictures_[v];
     const ViewPose& pose = poses_[v];
@@ -74,8 +78,9 @@ std::vector<SurfaceSample> CoarseDepths::Samples(int64_t max_samples, double tol
         if (std::isnan(depth)) continue;
         const double side_m = depth / pose.focal_px * step_ * stride;
         samples.push_back({.position = pose.Centre() + depth * pose.DirectionAt(PositionOf(column), PositionOf(row)),
-                           .area_m2 = side_m * side_m / CosineFromByte(picture.cosine[i])});
-        source.push_back(v);
+                           .area_m2 = side_m * side_m / CosineFromByte(picture.cosine[i]),
+                           .cosine = CosineFromByte(picture.cosine[i]),
+                           .view = v});
       }
     }
   }
@@ -85,7 +90,7 @@ std::vector<SurfaceSample> CoarseDepths::Samples(int64_t max_samples, double tol
     for (int64_t s = task * kSamplesPerTask; s < std::min(n_samples, (task + 1) * kSamplesPerTask); ++s) {
       const auto i = static_cast<size_t>(s);
       for (size_t v = 0; v < pictures_.size(); ++v) {
-        if (v != source[i] && Sees(v, samples[i].position, tolerance_m)) ++samples[i].views;
+        if (v != samples[i].view && Sees(v, samples[i].position, tolerance_m)) ++samples[i].views;
       }
     }
   });

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/base/thread_pool.h"
@@ -14,7 +15,9 @@ namespace skyquilt::surface {
 struct SurfaceSample {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // survey ENU, metres
   double area_m2 = 0.0;                                // of the surface that it stands for
+  double cosine = 1.0;                                 // of the angle between its ray and its normal, at least 0.1
   int views = 1;                                       // that see it, the one it comes from included
+  size_t view = 0;                                     // the one it comes from
 };
 
 class CoarseDepths {
@@ -23,7 +26,15 @@ class CoarseDepths {
   CoarseDepths(int64_t pixels, double limit_bytes);
   void Add(const DepthView& view);
 
+  // How a view shows the surroundings of a place.
+  struct Look {
+    double behind_m = 0.0;  // how far the place is behind what is shown there; negative: in front of it
+    double slack_m = 0.0;   // by so much the depth may differ between the kept pixel and the place
+  };
+
   const std::vector<ViewPose>& poses() const { return poses_; }
+  // Nothing when the place is outside the image, or no depth is known there.
+  std::optional<Look> LookAtPlace(size_t view, const Eigen::Vector3d& x_in_enu) const;
   // Whether the view shows this place rather than something in front of or behind it; the distance may differ by tolerance_m.
   bool Sees(size_t view, const Eigen::Vector3d& x_in_enu, double tolerance_m) const;
   // About max_samples places or fewer, evenly from all views, with the number of views that see each. Same result for any number of threads.

@@ -12,6 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "core/survey/view_kind.h"
 #include "surface/views/view_files.h"
 #include "surface/views/view_gaps.h"
 #include "surface/views/view_poses.h"
@@ -30,7 +31,7 @@ int64_t RaysOf(std::span<const ViewPose> poses) {
 }
 
 // Of everything that the pictures depend on, so that those of other options or of another scene are not taken for these.
-std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double voxel_m) {
+std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double voxel_m, bool level) {
   std::string text;
   const auto add = [&text](const auto& value) {
     static_assert(std::is_arithmetic_v<std::decay_t<decltype(value)>>);
@@ -51,6 +52,7 @@ std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double v
   add(input.info->parameters);
   text.append(input.info->config);
   for (const ViewPose& pose : places.training) add_pose(pose);
+  if (level) add(level);
   return base::HashHex(text);
 }
 
@@ -128,7 +130,8 @@ void Report(const DepthViewRenderer& renderer, size_t photos) {
 
 DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::ThreadPool& threads) {
   const PhotoPlaces places = PlacesOfPhotos(input);
-  const std::string key = KeyOf(input, places, voxel_m);
+  const bool level = survey::LooksLevel(*input.survey);
+  const std::string key = KeyOf(input, places, voxel_m, level);
   const std::filesystem::path folder = input.work_folder / "views", joined = input.work_folder / "views.bin";
   std::error_code ignored;
   if (std::optional<DepthViews> finished = OpenFinished(joined, key)) {
@@ -143,7 +146,7 @@ DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::Thr
   renderer.Make(places.training, "surface views", input.options.virtual_views ? &coarse : nullptr);
   if (input.options.virtual_views) {
     const auto budget = static_cast<int64_t>(kVirtualShare * static_cast<double>(RaysOf(places.training)));
-    const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget};
+    const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget, level};
     renderer.Make(PlanGapViews(coarse, gaps, threads), "surface views of gaps", nullptr);
   }
   JoinViews(renderer.poses(), key, folder, joined);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -50,6 +51,17 @@ struct AnalyticScene {
 inline geo::Rigid3d LookingDown(const Eigen::Vector3d& centre) {
   geo::Rigid3d pose;
   pose.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
+  pose.translation = -(pose.rotation * centre);
+  return pose;
+}
+
+// Looks along the horizon with the sky up, so many degrees east of north.
+inline geo::Rigid3d LookingLevel(const Eigen::Vector3d& centre, double heading_deg) {
+  const double heading = heading_deg * std::numbers::pi / 180.0;
+  Eigen::Matrix3d rotation;
+  rotation << std::cos(heading), -std::sin(heading), 0.0, 0.0, 0.0, -1.0, std::sin(heading), std::cos(heading), 0.0;
+  geo::Rigid3d pose;
+  pose.rotation = Eigen::Quaterniond(rotation);
   pose.translation = -(pose.rotation * centre);
   return pose;
 }

@@ -106,6 +106,25 @@ TEST_F(RenderViews, WithoutVirtualViewsOnlyPhotos) {
   EXPECT_EQ(Render(survey_).size(), 8U);
 }
 
+TEST_F(RenderViews, VirtualViewsOfLevelPhotosAreLevelToo) {
+  survey_.survey.photos.clear();
+  survey_.scene.house_min = {-40.0, 0.0, 0.0};
+  survey_.scene.house_max = {40.0, 10.0, 15.0};
+  for (const double x : {-10.0, 0.0, 10.0}) {
+    survey_.AddPhoto(x, -20.0);
+    survey_.survey.photos.back().cam_from_enu = LookingLevel({x, -20.0, 1.7}, 0.0);
+    survey_.survey.photos.back().agl_m = 20.0;
+  }
+  const DepthViews views = Render(survey_);
+  ASSERT_GT(views.size(), 3U);
+  for (size_t v = 3; v < views.size(); ++v) {
+    const ViewPose& pose = views.pose(v);
+    EXPECT_EQ(pose.photo, -1);
+    EXPECT_NEAR(pose.Centre().z(), 1.7, 1e-9);
+    EXPECT_GT(pose.DirectionAt(pose.cx, pose.cy).y(), 0.5);
+  }
+}
+
 TEST_F(RenderViews, SameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE(WholeFile(1) == WholeFile(3));
 }

@@ -1,61 +1,18 @@
+#include "surface/mesh/hole_closing.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
 
 #include "core/base/random.h"
-#include "surface/mesh/border_loops.h"
-#include "surface/mesh/hole_patch.h"
 #include "surface/mesh/mesh_tools.h"
 #include "surface/mesh/vectors.h"
 
 namespace skyquilt::surface {
 namespace {
 
-constexpr size_t kMostHoleEdges = 2000;
-constexpr double kLevelShare = 0.5, kLevelMargin_m = 0.5;
-constexpr double kUpwards = 0.5, kUpwardsShare = 0.7;
-constexpr double kDeepBelow_m = 3.0;
 constexpr uint32_t kNoHole = std::numeric_limits<uint32_t>::max();
-
-struct GroundHole {
-  std::vector<uint32_t> vertex;           // counter-clockwise seen from above
-  std::vector<Eigen::Vector3d> position;  // of these vertices
-  Eigen::Vector2d low, high;              // box around them
-  double lowest_m = 0.0;
-  bool blocked = false;  // something lies above or below
-};
-
-// A hole if this border may be one, with an empty list of vertices if not.
-GroundHole HoleOf(const Mesh& mesh, const BorderLoop& loop, double max_area_m2) {
-  const size_t n = loop.vertex.size();
-  if (n < 3 || n > kMostHoleEdges) return {};
-  GroundHole hole;
-  Eigen::Vector3d low = mesh.position[loop.vertex[0]], high = low;
-  const Eigen::Vector2d origin = low.head<2>();
-  double double_area = 0.0, length = 0.0, upwards_length = 0.0;
-  for (size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d &x = mesh.position[loop.vertex[i]], &y = mesh.position[loop.vertex[(i + 1) % n]];
-    if (!x.allFinite()) return {};
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-    double_area -= DoubleAreaFromAbove(origin, x.head<2>(), y.head<2>());  // the border runs clockwise around a hole
-    const Triangle& t = mesh.triangle[loop.triangle[i]];
-    const Eigen::Vector3d normal = DoubleAreaNormal(mesh.position[t[0]], mesh.position[t[1]], mesh.position[t[2]]);
-    length += (y - x).norm();
-    if (normal.z() > kUpwards * normal.norm()) upwards_length += (y - x).norm();
-  }
-  const double area = 0.5 * double_area;
-  if (!(area > 0.0 && area <= max_area_m2) || upwards_length < kUpwardsShare * length) return {};
-  if (high.z() - low.z() > kLevelShare * std::sqrt(area) + kLevelMargin_m) return {};
-  hole.vertex.assign(loop.vertex.rbegin(), loop.vertex.rend());
-  for (const uint32_t v : hole.vertex) hole.position.push_back(mesh.position[v]);
-  if (CrossesItself(hole.position)) return {};
-  hole.low = low.head<2>();
-  hole.high = high.head<2>();
-  hole.lowest_m = low.z();
-  return hole;
-}
 
 bool IsInside(const Eigen::Vector2d& x, const std::vector<Eigen::Vector3d>& polygon) {
   bool inside = false;
@@ -75,9 +32,9 @@ bool Crosses(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Ve
 
 class HoleBlocker {
  public:
-  HoleBlocker(const Mesh& mesh, std::vector<GroundHole>* holes) : mesh_(mesh), holes_(*holes), hole_of_(mesh.position.size(), kNoHole) {
+  HoleBlocker(const Mesh& mesh, std::vector<Hole>* holes) : mesh_(mesh), holes_(*holes), hole_of_(mesh.position.size(), kNoHole) {
     double sum = 0.0;
-    for (const GroundHole& hole : holes_) sum += (hole.high - hole.low).maxCoeff();
+    for (const Hole& hole : holes_) sum += (hole.high - hole.low).head<2>().maxCoeff();
     cell_m_ = std::max(sum / static_cast<double>(std::max<size_t>(holes_.size(), 1)), 0.01);
     for (uint32_t i = 0; i < holes_.size(); ++i) {
       for (const uint32_t v : holes_[i].vertex) hole_of_[v] = i;
@@ -96,9 +53,8 @@ class HoleBlocker {
       const Eigen::Vector3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
       const int64_t x0 = CellOf(low.x()), x1 = CellOf(high.x()), y0 = CellOf(low.y()), y1 = CellOf(high.y());
       const auto visit = [&](uint32_t i) {
-        GroundHole& hole = holes_[i];
-        if (hole.blocked || high.z() < hole.lowest_m - kDeepBelow_m) return;
-        if ((low.head<2>().array() > hole.high.array()).any() || (high.head<2>().array() < hole.low.array()).any()) return;
+        Hole& hole = holes_[i];
+        if (hole.blocked || (low.array() > hole.high.array()).any() || (high.array() < hole.low.array()).any()) return;
         hole.blocked = Overlaps(t, i);
       };
       if (static_cast<double>(x1 - x0 + 1) * static_cast<double>(y1 - y0 + 1) > static_cast<double>(holes_.size())) {
@@ -123,10 +79,14 @@ class HoleBlocker {
   // Different cells may share a key; boxes are compared anyway.
   static uint64_t CellKey(int64_t x, int64_t y) { return base::MixBits(static_cast<uint64_t>(x)) + static_cast<uint64_t>(y); }
 
-  // Whether the triangle covers a part of the hole seen from above. The triangles along the border touch it without that.
+  // Whether the triangle covers a part of the hole seen along its normal. The triangles along the border touch it without that.
   bool Overlaps(const Triangle& t, uint32_t index) const {
-    const GroundHole& hole = holes_[index];
-    const auto at = [&](size_t k) -> Eigen::Vector2d { return mesh_.position[t[k % 3]].head<2>(); };
+    const Hole& hole = holes_[index];
+    const std::array<Eigen::Vector3d, 3> corner = {hole.Turned(mesh_.position[t[0]]), hole.Turned(mesh_.position[t[1]]),
+                                                   hole.Turned(mesh_.position[t[2]])};
+    const auto at = [&](size_t k) -> Eigen::Vector2d { return corner[k % 3].head<2>(); };
+    const auto [lowest, highest] = std::minmax({corner[0].z(), corner[1].z(), corner[2].z()});
+    if (highest < hole.lowest_m || lowest > hole.highest_m) return false;
     if (IsInside((at(0) + at(1) + at(2)) / 3.0, hole.position)) return true;
     for (size_t k = 0; k < 3; ++k) {
       if (hole_of_[t[k]] != index && IsInside(at(k), hole.position)) return true;
@@ -143,14 +103,14 @@ class HoleBlocker {
   }
 
   const Mesh& mesh_;
-  std::vector<GroundHole>& holes_;
+  std::vector<Hole>& holes_;
   std::vector<uint32_t> hole_of_;  // per vertex of the mesh: the hole on whose border it is
   double cell_m_ = 1.0;
   std::unordered_map<uint64_t, std::vector<uint32_t>> in_cell_;  // holes whose box meets the cell
 };
 
 // Whether an edge of the patch between vertices of the border is an edge of the mesh already; together they would have too many triangles.
-bool DoublesAnEdge(const HolePatch& patch, const GroundHole& hole, const std::vector<EdgeUse>& uses) {
+bool DoublesAnEdge(const HolePatch& patch, const Hole& hole, const std::vector<EdgeUse>& uses) {
   const size_t n = hole.vertex.size();
   for (const Triangle& t : patch.triangle) {
     for (size_t k = 0; k < 3; ++k) {
@@ -162,10 +122,10 @@ bool DoublesAnEdge(const HolePatch& patch, const GroundHole& hole, const std::ve
 }
 
 // Returns the area of the patch.
-double AddPatch(const HolePatch& patch, const GroundHole& hole, uint64_t* next_key, Mesh* mesh) {
+double AddPatch(const HolePatch& patch, const Hole& hole, uint64_t* next_key, Mesh* mesh) {
   const size_t first = mesh->position.size();
   for (const Eigen::Vector3d& x : patch.inner) {
-    mesh->position.push_back(x);
+    mesh->position.push_back(hole.TurnedBack(x));
     mesh->key.push_back(*next_key);
     mesh->views.push_back(0);
     mesh->filled.push_back(1);
@@ -183,14 +143,7 @@ double AddPatch(const HolePatch& patch, const GroundHole& hole, uint64_t* next_k
 
 }  // namespace
 
-double FillGroundHoles(Mesh* mesh, double max_area_m2, double spacing_m) {
-  if (!(max_area_m2 > 0.0)) return 0.0;
-  const std::vector<EdgeUse> uses = SortedEdgeUses(*mesh);
-  std::vector<GroundHole> holes;
-  for (const BorderLoop& loop : SimpleBorderLoops(*mesh, uses)) {
-    GroundHole hole = HoleOf(*mesh, loop, max_area_m2);
-    if (!hole.vertex.empty()) holes.push_back(std::move(hole));
-  }
+double CloseHoles(std::vector<Hole> holes, const std::vector<EdgeUse>& uses, double spacing_m, const IsOpenThere& is_open, Mesh* mesh) {
   if (holes.empty()) return 0.0;
   HoleBlocker(*mesh, &holes).Run();
   uint64_t next_key = kFilledKeyBit;
@@ -198,10 +151,13 @@ double FillGroundHoles(Mesh* mesh, double max_area_m2, double spacing_m) {
     if ((key & kFilledKeyBit) != 0) next_key = std::max(next_key, (key | (2 * kFilledKeyBit - 1)) + 1 + kFilledKeyBit);
   }
   double area = 0.0;
-  for (const GroundHole& hole : holes) {
+  for (const Hole& hole : holes) {
     if (hole.blocked) continue;
     const std::optional<HolePatch> patch = MakeHolePatch(hole.position, spacing_m);
-    if (patch && !DoublesAnEdge(*patch, hole, uses)) area += AddPatch(*patch, hole, &next_key, mesh);
+    if (!patch || DoublesAnEdge(*patch, hole, uses)) continue;
+    const auto is_open_at = [&](const Eigen::Vector3d& x) { return is_open(hole.TurnedBack(x), hole.Normal()); };
+    if (is_open && std::any_of(patch->inner.begin(), patch->inner.end(), is_open_at)) continue;
+    area += AddPatch(*patch, hole, &next_key, mesh);
   }
   return area;
 }

@@ -217,20 +217,21 @@ class WallFinder {
   base::Random random_{58};
 };
 
-// Whether more of the photos that see the wall stand on the side to which `normal` points: those that observed its points, or where that is not known
-// all that look towards it.
+// Whether the photos that see the wall stand on the side to which `normal` points, the straighter they see it the more they count: those that
+// observed its points, or where that is not known all that look towards it.
 bool PhotosStandThere(const survey::Survey& survey, const FoundWall& wall, const Eigen::Vector3d& middle, const Eigen::Vector3d& normal) {
-  int64_t there = 0, behind = 0;
+  double there = 0.0, behind = 0.0;
   const auto count = [&](const survey::Photo& photo, const Eigen::Vector3d& x) {
     if (photo.is_test) return;
-    ++((photo.cam_from_enu.OriginInSource() - x).dot(normal) > 0.0 ? there : behind);
+    const double cosine = (photo.cam_from_enu.OriginInSource() - x).normalized().dot(normal);
+    (cosine > 0.0 ? there : behind) += cosine * cosine;
   };
   if (!survey.tracks.Empty()) {
     for (const size_t i : wall.points) {
       for (const int32_t photo : survey.tracks.PhotosOf(i)) count(survey.photos[static_cast<size_t>(photo)], survey.points[i].x_in_enu);
     }
   }
-  if (there + behind == 0) {
+  if (there + behind == 0.0) {
     for (const survey::Photo& photo : survey.photos) {
       if ((photo.cam_from_enu * middle).z() > 0.0) count(photo, middle);
     }

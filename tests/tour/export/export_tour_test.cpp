@@ -166,18 +166,18 @@ TEST_F(ExportTourTest, AChangedAssetCountsAsMissing) {
 // A file put there by hand under the right digest, which no upload would have let in.
 TEST_F(ExportTourTest, AnAssetOfAWrongTypeIsLeftOutByNameAndTheRestPlays) {
   const std::string page = "<html><script>alert(1)</script></html>", program = "MZ\x90" + std::string(200, '\0');
-  const std::string picture_name = AssetNameOf(page, "png"), model_name = AssetNameOf(program, "glb");
-  base::WriteFileAtomically(AssetFolder(project) / picture_name, page);
+  const std::string page_name = AssetNameOf(page, "png"), model_name = AssetNameOf(program, "glb");
+  base::WriteFileAtomically(AssetFolder(project) / page_name, page);
   base::WriteFileAtomically(AssetFolder(project) / model_name, program);
   Tour tour = TourWith("A farm");
-  tour.stops[1].picture = picture_name;
+  tour.stops[1].picture = page_name;
   Thing model;
   model.kind = ThingKind::kModel;
   model.id = "thing";
   model.text = "The shed";
   model.asset = model_name;
   tour.things.push_back(model);
-  tour.assets[picture_name] = {"page.png", page.size()};
+  tour.assets[page_name] = {"page.png", page.size()};
   tour.assets[model_name] = {"shed.glb", program.size()};
   SaveTour(tour, project);
   const Exported exported = Export();
@@ -188,12 +188,12 @@ TEST_F(ExportTourTest, AnAssetOfAWrongTypeIsLeftOutByNameAndTheRestPlays) {
                                [&](const std::string& text) { return text.find(one) != std::string::npos && text.find(two) != std::string::npos; });
   };
   EXPECT_TRUE(says("農場", "page.png") && says("The shed", "shed.glb"));
-  EXPECT_TRUE(says(picture_name, "it is not a PNG picture") && says(model_name, "left out"));
-  EXPECT_FALSE(fs::exists(out / "data" / "assets" / (picture_name + ".js")) || fs::exists(out / "data" / "assets" / (model_name + ".js")));
+  EXPECT_TRUE(says(page_name, "it is not a PNG picture") && says(model_name, "left out"));
+  EXPECT_FALSE(fs::exists(out / "data" / "assets" / (page_name + ".js")) || fs::exists(out / "data" / "assets" / (model_name + ".js")));
   EXPECT_EQ(ContentOf(out, "assets/" + picture_name), picture);
   const auto files = JsonOf(out, "manifest.json")["files"].get<std::set<std::string>>();
   EXPECT_TRUE(files.contains("assets/" + picture_name));
-  EXPECT_FALSE(files.contains("assets/" + picture_name) || files.contains("assets/" + model_name));
+  EXPECT_FALSE(files.contains("assets/" + page_name) || files.contains("assets/" + model_name));
 }
 
 // The page brightens the surface and the pictures of the stop alike, so these are not bright themselves; the poster is shown without it.

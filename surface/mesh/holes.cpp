@@ -1,9 +1,9 @@
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "core/linear/linear.h"
 #include "surface/mesh/border_loops.h"
 #include "surface/mesh/hole_closing.h"
 #include "surface/mesh/vectors.h"
@@ -65,9 +65,9 @@ std::optional<BorderPlane> PlaneOf(const std::vector<Eigen::Vector3d>& border) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (size_t i = 0; i < n; ++i) covariance += weight(i) / sum * (border[i] - middle) * (border[i] - middle).transpose();
   if (!covariance.allFinite()) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);  // eigenvalues rise
-  if (!(axes.eigenvalues()[1] > 1e-6 * axes.eigenvalues()[2])) return std::nullopt;
-  return BorderPlane{middle, axes.eigenvectors().col(0)};
+  const linear::EigenPairs<3> axes = linear::SymmetricEigen<3>(covariance);  // values rise
+  if (!(axes.values[1] > 1e-6 * axes.values[2])) return std::nullopt;
+  return BorderPlane{middle, axes.vectors.col(0)};
 }
 
 // A hole in a plane of any direction if this border may be one, with an empty list of vertices if not.

@@ -146,12 +146,12 @@ class BuildingFiles:
             expect(self.measure(row, "length") >= self.measure(row, "width") > 0.0 and self.measure(row, "eave") <= ridge + 1e-6, f"{row}")
             expect(row["accepted"] in ("0", "1") and row["roof"] in ("flat", "gable", "hip", "other"), f"{row}")
             expect(0.0 <= float(row["wall_seen"]) <= 1.0, f"{row['wall_seen']} of the walls of building {row['id']} were seen")
-        eastings = [float(row["easting"]) for row in self.rows]
         if not self.georeference["crs"]:
             expect(all(row["longitude"] == row["latitude"] == "" for row in self.rows), "there are longitudes without a geo-reference")
             return
-        # In the survey's own frame, whose north is that of the map only along its middle meridian: a metre or two between houses one behind the other.
-        expect(all(b > a - 3.0 for a, b in zip(eastings, eastings[1:])), f"buildings are not numbered from west to east: {eastings}")
+        # By longitude: the map's north is the survey's only along the middle meridian of its zone. 1e-7 degrees are a centimetre.
+        longitudes = [float(row["longitude"]) for row in self.rows]
+        expect(all(b > a - 1e-7 for a, b in zip(longitudes, longitudes[1:])), f"buildings are not numbered from west to east: {longitudes}")
         places = [(float(row["longitude"]), float(row["latitude"]), 0.0) for row in self.rows]
         for row, place in zip(self.rows, transformed(places, "EPSG:4326", self.georeference["crs"]) if places else []):
             apart = math.dist(place[:2], (float(row["easting"]), float(row["northing"])))

@@ -24,16 +24,6 @@ inline void ObserveAll(survey::Survey* survey) {
   }
 }
 
-// Camera x = east, y = down, z = north.
-inline survey::Photo LevelPhoto(const Eigen::Vector3d& eye, const std::string& name) {
-  survey::Photo photo = NadirPhoto(eye, name);
-  Eigen::Matrix3d rotation;
-  rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
-  photo.cam_from_enu.translation = -(rotation * eye);
-  return photo;
-}
-
 constexpr double kFromWall_m = 12.0;
 
 constexpr double kFacadeFocal_px = 500.0;

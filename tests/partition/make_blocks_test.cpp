@@ -368,10 +368,18 @@ TEST(FindSurveyArea, SaysWhereItIsThatOfThePoints) {
 
 // Three times their height of 1.6 m reaches nothing of what they show.
 TEST(FindSurveyArea, LevelPhotosReachWhatTheySee) {
-  const survey::Survey survey = FacadeSurvey();
+  survey::Survey survey = FacadeSurvey();
   const SurveyArea area = FindSurveyArea(survey, ReliablePoints(survey), "points", 2);
   EXPECT_FALSE(area.by_points);
   EXPECT_NEAR(area.CoveredArea({15.0, kFromWall_m - 0.3}, {30.0, kFromWall_m + 0.3}), 15.0 * 0.6, 1e-6);
+  // The foot of the wall alone, so that the photos' heights above it are known and reach too short.
+  for (survey::SparsePoint& point : survey.points) {
+    point.x_in_enu.y() = kFromWall_m + 0.03 * (point.x_in_enu.y() - kFromWall_m);
+    point.x_in_enu.z() = 0.0;
+  }
+  EXPECT_FALSE(FindSurveyArea(survey, ReliablePoints(survey), "points", 2).by_points);
+  survey.tracks = {};
+  EXPECT_TRUE(FindSurveyArea(survey, ReliablePoints(survey), "points", 2).by_points);
 }
 
 TEST(MakeBlocks, VoxelsThatShareEntriesMakeTablesSmaller) {

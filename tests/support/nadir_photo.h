@@ -1,4 +1,4 @@
-// A photo that looks straight down, for surveys in tests.
+// Photos that look straight down or level, for surveys in tests.
 #pragma once
 
 #include <cmath>
@@ -17,6 +17,16 @@ inline survey::Photo NadirPhoto(const Eigen::Vector3d& eye, const std::string& n
   photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
   photo.cam_from_enu.translation = -(rotation * eye);
   photo.agl_m = std::nan("");
+  return photo;
+}
+
+// One that looks level to the north: camera x = east, y = down, z = north.
+inline survey::Photo LevelPhoto(const Eigen::Vector3d& eye, const std::string& name) {
+  survey::Photo photo = NadirPhoto(eye, name);
+  Eigen::Matrix3d rotation;
+  rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
+  photo.cam_from_enu.translation = -(rotation * eye);
   return photo;
 }
 

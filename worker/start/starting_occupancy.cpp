@@ -67,8 +67,11 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
         if (enough_views[static_cast<size_t>(gy) * static_cast<size_t>(groups[0]) + static_cast<size_t>(gx)] != 0) {
           const Eigen::Vector3d centre = centre_of(gx, gy, static_cast<int>(gz));
           const double radius = radius_at(centre);
-          const ViewCounter::Accept shows = [&](int photo) { return ranges.MayShow(photo, centre, radius); };
-          if (ranges.Empty() ? counter.Count(centre, radius, 1) > 0 : counter.Count(centre, radius, min_views, shows) >= min_views) continue;
+          if (ranges.Empty()) {
+            if (counter.Count(centre, radius, 1) > 0) continue;
+          } else if (counter.Count(centre, radius, min_views, [&](int photo) { return ranges.MayShow(photo, centre, radius); }) >= min_views) {
+            continue;
+          }
         }
         for (int z = static_cast<int>(gz) * kGroup; z < std::min(grid.size[2], (static_cast<int>(gz) + 1) * kGroup); ++z) {
           for (int y = gy * kGroup; y < std::min(grid.size[1], (gy + 1) * kGroup); ++y) {

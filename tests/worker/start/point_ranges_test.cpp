@@ -19,16 +19,6 @@ namespace {
 constexpr int kLevelPhotoWidth = 96, kLevelPhotoHeight = 72;
 constexpr double kWall = 20.0;  // y of the wall, which is 10 m high
 
-// From `eye` to the north.
-survey::Photo LevelPhoto(const Eigen::Vector3d& eye, const std::string& name) {
-  survey::Photo photo = NadirPhoto(eye, name);
-  Eigen::Matrix3d rotation;
-  rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  photo.cam_from_enu.rotation = Eigen::Quaterniond(rotation);
-  photo.cam_from_enu.translation = -(rotation * eye);
-  return photo;
-}
-
 class PointRangesTest : public ::testing::Test {
  protected:
   using MakePhoto = survey::Photo(const Eigen::Vector3d& eye, const std::string& name);

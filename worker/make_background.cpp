@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -50,10 +49,9 @@ std::vector<float> SkyOf(const RaySource& source, const survey::Survey& survey, 
       if (!ranges.Of(tile).sky || !srgb.allFinite()) continue;
       Eigen::Vector3d origin, direction;
       source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
-      const double azimuth = std::atan2(direction.y(), direction.x()) / (2.0 * std::numbers::pi);
-      const double elevation = std::atan2(direction.z(), direction.head<2>().norm()) / (0.5 * std::numbers::pi);
+      const Eigen::Vector2d shares = scene::SkyShares(direction);
       const auto along = [](double share, int n) { return std::clamp(static_cast<int>(share * n), 0, n - 1); };
-      const size_t cell = shape.Index(along(azimuth - std::floor(azimuth), shape.columns), along(elevation, shape.rows));
+      const size_t cell = shape.Index(along(shares.x(), shape.columns), along(shares.y(), shape.rows));
       for (size_t c = 0; c < 3; ++c) sum[3 * cell + c] += static_cast<double>(srgb[static_cast<Eigen::Index>(c)]);
       count[cell] += 1.0;
     }

@@ -17,10 +17,9 @@ constexpr const char* kSky = "background/sky";
 
 // Between the centres of the sky's cells.
 std::array<float, 3> SkyColor(const std::vector<float>& sky_srgb, const Eigen::Vector3d& direction) {
-  const double elevation = std::atan2(direction.z(), direction.head<2>().norm()) / (0.5 * std::numbers::pi);
-  const double azimuth = std::atan2(direction.y(), direction.x()) / (2.0 * std::numbers::pi);
-  const double v = std::clamp(elevation * Background::kSkyRows - 0.5, 0.0, Background::kSkyRows - 1.0);
-  const double u = (azimuth - std::floor(azimuth)) * Background::kSkyColumns + Background::kSkyColumns - 0.5;
+  const Eigen::Vector2d shares = SkyShares(direction);
+  const double v = std::clamp(shares.y() * Background::kSkyRows - 0.5, 0.0, Background::kSkyRows - 1.0);
+  const double u = shares.x() * Background::kSkyColumns + Background::kSkyColumns - 0.5;
   const int row = std::min(static_cast<int>(v), Background::kSkyRows - 2), column = static_cast<int>(u);
   std::array<float, 3> rgb = {0.0F, 0.0F, 0.0F};
   for (int i = 0; i < 4; ++i) {
@@ -32,6 +31,11 @@ std::array<float, 3> SkyColor(const std::vector<float>& sky_srgb, const Eigen::V
 }
 
 }  // namespace
+
+Eigen::Vector2d SkyShares(const Eigen::Vector3d& direction_enu) {
+  const double azimuth = std::atan2(direction_enu.y(), direction_enu.x()) / (2.0 * std::numbers::pi);
+  return {azimuth - std::floor(azimuth), std::atan2(direction_enu.z(), direction_enu.head<2>().norm()) / (0.5 * std::numbers::pi)};
+}
 
 std::array<float, 3> Background::Color(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu) const {
   if (direction_enu.z() > 0.0 && !sky_srgb.empty()) return SkyColor(sky_srgb, direction_enu);

@@ -25,6 +25,9 @@ struct Background {
   std::array<float, 3> Color(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu) const;
 };
 
+// Where a direction that rises is in the sky, each 0 to 1: from east over north all round, and from the horizon to the zenith.
+Eigen::Vector2d SkyShares(const Eigen::Vector3d& direction_enu);
+
 // The background must outlive the writer's Commit.
 void PutBackground(const Background& background, checkpoint::ArchiveWriter& writer);
 // Black where the file has none. Throws base::InputError when arrays and attributes disagree.

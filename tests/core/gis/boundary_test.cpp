@@ -17,7 +17,6 @@
 namespace skyquilt::gis {
 namespace {
 
-
 // 100 x 80 m with a hole of 20 x 20 m, easting and northing.
 const Rings kYard = {{{430000, 4580000}, {430100, 4580000}, {430100, 4580080}, {430000, 4580080}},
                      {{430040, 4580030}, {430060, 4580030}, {430060, 4580050}, {430040, 4580050}}};

@@ -113,10 +113,10 @@ TEST_F(ReadOutlinesTest, AllFormatsAgree) {
 }
 
 TEST_F(ReadOutlinesTest, MultipolygonsAreSplitAndKeepTheirId) {
-  base::WriteFileAtomically(folder_ / "a.json",
-                            Features(OneFeature("", R"("a":1)", "Point", "[2.1,41.3]") + "," +
-                                     OneFeature("", R"("name":"two")", "MultiPolygon", "[" + InDegrees(kHouse, ",7.5") + "," + InDegrees(kShed, ",7.5") + "]") + "," +
-                                     OneFeature("", R"("name":null)", "Polygon", InDegrees(kShed, ",7.5"))));
+  base::WriteFileAtomically(folder_ / "a.json", Features(OneFeature("", R"("a":1)", "Point", "[2.1,41.3]") + "," +
+                                                         OneFeature("", R"("name":"two")", "MultiPolygon",
+                                                                    "[" + InDegrees(kHouse, ",7.5") + "," + InDegrees(kShed, ",7.5") + "]") +
+                                                         "," + OneFeature("", R"("name":null)", "Polygon", InDegrees(kShed, ",7.5"))));
   const std::vector<Outline> outlines = ReadOutlines(folder_ / "a.json", true, kMade31N);
   EXPECT_EQ(IdsOf(outlines), (std::vector<std::string>{"two", "two", ""}));
   ExpectHouse(outlines[0]);

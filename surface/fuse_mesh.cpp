@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/base/amounts.h"
@@ -22,8 +23,9 @@
 namespace skyquilt::surface {
 namespace {
 
-constexpr double kLargestGrowth = 3.0;   // of voxels when the memory is short
-constexpr double kOffPlaneVoxels = 3.0;  // of the border of a hole that is closed in its plane
+constexpr double kLargestGrowth = 3.0;       // of voxels when the memory is short
+constexpr double kOffPlaneVoxels = 3.0;      // of the border of a hole that is closed in its plane
+constexpr double kLevelIslandVoxels = 12.0;  // edge of the smallest square piece that is kept where photos look level
 
 int FloorDivide(int value, int by) {
   return value >= 0 ? value / by : -((by - 1 - value) / by);
@@ -206,10 +208,12 @@ FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double vo
   if (input.boundary && mesh.triangle.empty() && any) {
     throw base::UsageError("products.boundary leaves nothing of the surface: the boundary does not meet it. Give a polygon that does, or none");
   }
-  const int islands = DropIslands(&mesh, input.options.min_island_m2);
+  const bool level = survey::LooksLevel(*input.survey);
+  // Things along a wall or in a room are small, and without a place on Earth the frame's metres say nothing.
+  const double island_m = level ? kLevelIslandVoxels * result.voxel_m : std::numeric_limits<double>::infinity();
+  const int islands = DropIslands(&mesh, std::min(input.options.min_island_m2, island_m * island_m));
   const double spacing_m = 4.0 * result.voxel_m;
   result.filled_m2 = FillGroundHoles(&mesh, kMaxHole_m2, spacing_m);
-  const bool level = survey::LooksLevel(*input.survey);
   if (level) {
     const std::vector<DepthView> pictures = views.All();
     const double truncation_m = plan.fuse.truncation_voxels * result.voxel_m;

@@ -23,7 +23,7 @@ struct SurfaceOptions {
   double min_opacity = 0.85;        // depths of pixels with a lower opacity are not used; at least 0.85, where a ray reaches the back of a surface
   double max_spread_voxels = 20.0;  // nor where the surface is blurred by more than this along the ray
   int min_views = 3;                // faces seen by fewer views are dropped
-  double min_island_m2 = 1.0;       // as are separate pieces with a smaller area
+  double min_island_m2 = 1.0;       // as are separate pieces with a smaller area; where photos look level, also at most 12 x 12 voxels
   double texel_gsd = 1.0;           // pixels of the texture, in ground sampling distances
   double photo_detail = 0.0;        // share of the fine detail of photos that is added to the texture, 0 to 1
   int jpeg_quality = 88;            // of the texture

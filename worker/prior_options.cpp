@@ -8,7 +8,7 @@ namespace skyquilt::worker {
 
 PriorOptions PriorOptions::Off() {
   PriorOptions off;
-  off.planar = off.upright = off.planes = off.points = off.normals = off.orientation = 0.0;
+  off.planar = off.upright = off.planes = off.points = off.free_space = off.normals = off.orientation = 0.0;
   return off;
 }
 
@@ -32,13 +32,15 @@ std::vector<config::Field<PriorOptions>> PriorOptions::Fields() {
        "off"},
       {"planes", &O::planes, Range{0, 1e3}, "weight of the loss that brings the surface onto planes of sparse points; 0: off"},
       {"points", &O::points, Range{0, 1e3}, "weight of the loss that brings the surface to the sparse points; 0: off"},
+      {"free_space", &O::free_space, Range{0, 1e3},
+       "weight of the loss that lets light pass well before the sparse points that a photo shows; 0: off"},
       {"normals", &O::normals, Range{0, 1e3},
        "weight of the loss that makes normals agree: those of the density, of a predicting head and of planes of sparse points; 0: off"},
       {"orientation", &O::orientation, Range{0, 1e3}, "weight of the loss that turns the normals of the density towards the camera; 0: off"},
       {"from", &O::from, Range{0, 1}, "share of the budget up to which these weights are 0"},
       {"until", &O::until, Range{0, 1}, "share of the budget at which they have their full size; between, they grow linearly"},
       {"points_end", &O::points_end, Range{0, 1},
-       "share of the budget at which the weight of points has fallen back to 0: to the end, points would cost sharpness"},
+       "share of the budget at which the weights of points and free_space have fallen back to 0: to the end, points would cost sharpness"},
       {"segment_share", &O::segment_share, Range{0, 0.5},
        "share of the rays that are drawn in groups within a segment, for all but planes and points"},
       {"point_share", &O::point_share, Range{0, 0.5}, "share of the rays that are drawn towards sparse points"},

@@ -14,9 +14,10 @@ struct PriorOptions {
   double upright = 0.0;      // and that plane is level or vertical when it nearly is, and vertical ones follow the direction of the buildings there
   double planes = 0.01;      // rays that end near a plane of sparse points (worker/planes/point_planes.h) end on it
   double points = 0.05;      // rays towards sparse points end there (worker/losses/point_depth_loss.h)
+  double free_space = 0.0;   // such rays lose no light well before their point (AddFreeSpaceLoss)
   double normals = 0.0;      // normals of the density, of a predicting head and of planes of sparse points agree (worker/losses/normal_loss.h)
   double orientation = 0.0;  // the density's normals face the camera
-  // The weights are 0 up to the share `from` of the budget and rise linearly to their full size at `until`. That of points falls linearly from there
+  // The weights are 0 up to the share `from` of the budget and rise linearly to their full size at `until`. Those of points and free_space fall linearly from there
   // to 0 at `points_end`: points bring surfaces near to where they belong, but in the end make them thinner than the steps that sample them.
   double from = 0.3;
   double until = 0.6;
@@ -31,6 +32,7 @@ struct PriorOptions {
   // Whether planes of sparse points are needed.
   bool Planes() const { return planes > 0.0 || normals > 0.0; }
   // Share of the full weights, 0..1; of points. progress: of the budget, 0..1.
+  bool Points() const { return points > 0.0 || free_space > 0.0; }  // whether rays are drawn towards sparse points
   double Strength(double progress) const;
   double PointStrength(double progress) const;
 

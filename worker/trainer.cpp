@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include "worker/trainer.h"
 
 #include <algorithm>
@@ -114,7 +115,14 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   source.UpdateExposures();
   render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active(), PriorOptions::Off());
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
-  FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, {}, threads);
+  PriorOptions prior_options = PriorOptions::Off();
+  if (getenv("SQ_CTX") != nullptr && !ranges.Empty() && !job.luminance.On()) {
+    prior_options = job.priors;
+    prior_options.planar = prior_options.upright = prior_options.planes = prior_options.normals = prior_options.orientation = 0.0;
+  }
+  const DepthPoints points = prior_options.Points() ? DepthPoints(*job.survey, source, area.box) : DepthPoints();
+  FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, {prior_options, nullptr, &points, nullptr, nullptr},
+                       threads);
   SessionRecord record;
   if (saved) {
     LoadSession(*saved, target, trainer, &record, &extras);
@@ -176,7 +184,7 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
   const LuminancePlan luminance{loaded.luminance, loaded.luminance_state, false};
   std::optional<PhotoSegments> segments;
   if (prior_options.Segments()) segments.emplace(*job.pixels, TrainingPhotos(*job.survey, block.photos), threads);
-  const DepthPoints points = prior_options.points > 0.0 ? DepthPoints(*job.survey, source, block.box) : DepthPoints();
+  const DepthPoints points = prior_options.Points() ? DepthPoints(*job.survey, source, block.box) : DepthPoints();
   const PointPlanes planes = prior_options.Planes() ? PointPlanes(*job.survey, block.box, block.gsd_m) : PointPlanes();
   const FieldPriors priors{prior_options, segments ? &*segments : nullptr, &points, &planes, &job.survey->directions};
   FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, job.seed, luminance, nullptr, priors, threads);

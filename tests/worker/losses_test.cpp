@@ -110,6 +110,22 @@ TEST(Losses, PointDepthLossIsSmallestAtThePoint) {
   for (const size_t other : {0U, 1U, 3U, 4U}) EXPECT_LT(loss_at(2), loss_at(other));
 }
 
+TEST(Losses, FreeSpaceLossHasItsGradientAndCountsOnlyWhatIsBefore) {
+  const Inputs t = {9.0, 9.5, 10.0, 10.5, 11.0};
+  ExpectLossGradient(
+      [&](double weight, const Inputs& w) {
+        CheckedLoss loss;
+        loss.gradient.assign(t.size(), 0.0);
+        loss.value = AddFreeSpaceLoss(weight, t.size(), w.data(), t.data(), 10.2, loss.gradient.data());
+        return loss;
+      },
+      {t.size(), 0.01, 0.4});
+  const Inputs w = {0.1, 0.2, 0.3, 0.2, 0.2};
+  Inputs gradient(t.size(), 0.0);
+  EXPECT_DOUBLE_EQ(AddFreeSpaceLoss(2.0, t.size(), w.data(), t.data(), 10.0, gradient.data()), 0.6);
+  EXPECT_EQ(gradient, (Inputs{2.0, 2.0, 0.0, 0.0, 0.0}));
+}
+
 TEST(Losses, SaturatedAndBlackPixelsAreBounds) {
   for (const auto loss : {SquaredPhotoLoss<double>, TonedPhotoLoss<double>}) {
     for (const auto& [rendered, target, counts] : {std::tuple{1.2, 1.0, false}, {0.9, 1.0, true}, {-0.1, 0.0, false}, {0.1, 0.0, true}}) {

@@ -70,7 +70,7 @@ class PriorsTest : public SmallSurvey {
 
 PriorOptions AllPriors() {
   PriorOptions priors;
-  priors.planar = priors.upright = priors.planes = priors.points = priors.normals = priors.orientation = 1e-2;
+  priors.planar = priors.upright = priors.planes = priors.points = priors.free_space = priors.normals = priors.orientation = 1e-2;
   priors.from = 0.1;
   priors.until = 0.3;
   return priors;
@@ -107,7 +107,8 @@ TEST_F(PriorsTest, WithoutWeightsNothingChanges) {
   EXPECT_EQ(Bytes("a.h5"), Bytes("c.h5"));
   // Each alone does something; planes of points, which need surfaces that are nearly opaque, only later (PlanesOfPointsMoveTheSurface).
   int run = 0;
-  const std::vector<double PriorOptions::*> weights = {&PriorOptions::planar, &PriorOptions::upright, &PriorOptions::points, &PriorOptions::normals,
+  const std::vector<double PriorOptions::*> weights = {&PriorOptions::planar, &PriorOptions::upright, &PriorOptions::points, &PriorOptions::free_space,
+                                                       &PriorOptions::normals,
                                                        &PriorOptions::orientation};
   for (const auto weight : weights) {
     PriorOptions one = AllPriors();

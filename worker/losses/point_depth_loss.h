@@ -1,4 +1,4 @@
-// Concentrates the compositing weights of a ray around a known distance of uncertain size (Deng et al. 2022, DS-NeRF, eq. 6: the divergence of the
+// Losses of rays towards a known point. The first concentrates the compositing weights of a ray around a known distance of uncertain size (Deng et al. 2022, DS-NeRF, eq. 6: the divergence of the
 // ray's distribution from a normal distribution; sigma enters squared).
 #pragma once
 
@@ -19,6 +19,18 @@ T AddPointDepthLoss(T weight, size_t n, const T* weights, const T* t, T step, T 
     const T g = weight * std::exp(T(-0.5F) * off * off) * step / (sigma * kRootTwoPi);
     loss -= std::log(weights[k] + kEpsilon) * g;
     weight_gradient[k] -= g / (weights[k] + kEpsilon);
+  }
+  return loss;
+}
+
+// weight times the light that is stopped before the distance `free_to`, as light from the point came through: sum of w_k over t_k < free_to (metres).
+// Adds the derivatives by w_k to weight_gradient (n); returns the loss. t ascends.
+template <typename T>
+T AddFreeSpaceLoss(T weight, size_t n, const T* weights, const T* t, T free_to, T* weight_gradient) {
+  T loss = T(0);
+  for (size_t k = 0; k < n && t[k] < free_to; ++k) {
+    loss += weight * weights[k];
+    weight_gradient[k] += weight;
   }
   return loss;
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr size_t kTiles = static_cast<size_t>(kTileRows) * kTileColumns;
 // Surfaces without points may be nearer than the points around them, and farther.
-constexpr float kNearSlack = 0.5F, kFarSlack = 1.5F;
+constexpr float kNearSlack = 0.8F, kFarSlack = 1.25F;
 // Neighbourhoods in tiles on each side, in which points are looked for one after another.
 constexpr std::array<int, 3> kReaches = {2, 4, 8};
 constexpr double kNearestShare = 0.02;  // of a photo's points: so many may be wrong

@@ -15,10 +15,10 @@ namespace skyquilt::worker {
 class PointRanges {
  public:
   struct Range {
-    float near = 0.0F;     // half the distance of the nearest point around the tile, or of the photo's nearest points where none is around it
+    float near = 0.0F;     // 0.8 of the distance of the nearest point around the tile, or of the photo's nearest points where none is around it
     float nearest = 0.0F;  // of the points around the tile; infinite: none
     float farthest = 0.0F;
-    float far = 0.0F;  // one and a half times that of the farthest; infinite: none
+    float far = 0.0F;  // 1.25 times that of the farthest; infinite: none
     // From here to the upper edge of the photo there are no points close by, and colours are bright, not reddish and much alike; above the horizon.
     bool sky = false;
     bool Known() const;  // whether points are around it

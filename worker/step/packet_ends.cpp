@@ -21,6 +21,8 @@ constexpr double kLeastFacing = 0.2;
 constexpr double kPlaneReachVoxels = 1.5;
 // Pixels are nowhere taken to be narrower than this: next to the camera they are, and the loss would have no bound.
 constexpr double kLeastWidthVoxels = 0.1;
+// So far before a sparse point, in its uncertainty along the ray, nothing stops its light.
+constexpr float kFreeSigmas = 3.0F;
 
 RayEnd EndOf(size_t n, const float* weights, const float* stops, double voxel_m) {
   constexpr double kFront = 0.15, kBack = 0.85;
@@ -129,9 +131,11 @@ void PacketEnds::AddGradient(const PacketSamples& s, size_t view, float* weight_
     // Samples are farther apart than many points are uncertain: the wider of both decides which samples are near the point.
     const auto step_m = static_cast<float>(shared_.target.step_m);
     const float sigma_m = std::hypot(ray.point_sigma_m, 0.5F * step_m);
-    const float weight = static_cast<float>(s.step->priors.points) * s.step->ray_share;
-    const float loss =
-        AddPointDepthLoss(weight, count, s.weight.data() + samples.begin, stops, step_m, ray.point_distance_m, sigma_m, weight_gradient);
+    const float* weights = s.weight.data() + samples.begin;
+    const float to_points = static_cast<float>(s.step->priors.points) * s.step->ray_share;
+    const float before_points = static_cast<float>(s.step->priors.free_space) * s.step->ray_share;
+    const float loss = AddPointDepthLoss(to_points, count, weights, stops, step_m, ray.point_distance_m, sigma_m, weight_gradient) +
+                       AddFreeSpaceLoss(before_points, count, weights, stops, ray.point_distance_m - kFreeSigmas * sigma_m, weight_gradient);
     sums.loss += static_cast<double>(loss) / static_cast<double>(s.step->ray_share);
   }
   if (distance_gradient_[view] == 0.0F) return;

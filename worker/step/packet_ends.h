@@ -24,7 +24,7 @@ class PacketEnds {
 
  private:
   static bool AtPoint(const PacketSamples& s, size_t view) {
-    return s.step->priors.points > 0.0 && s.Ray(view).ray.point_sigma_m > 0.0F && s.views[view].count > 0;
+    return s.step->priors.Points() && s.Ray(view).ray.point_sigma_m > 0.0F && s.views[view].count > 0;
   }
   void AddKnownPlaneLoss(const PacketSamples& s, size_t view, LossSums& sums);
   void AddSegmentLoss(const PacketSamples& s, size_t first, size_t end, LossSums& sums);

@@ -11,6 +11,7 @@ StepPriors FieldPriors::StepAt(double progress, double voxel_m) const {
           .upright = of_segments * options.upright,
           .planes = of_planes * options.planes,
           .points = of_points * options.points,
+          .free_space = of_points * options.free_space,
           .normals = of_segments * options.normals,
           .orientation = of_segments * options.orientation,
           .voxel_m = voxel_m,
@@ -19,7 +20,7 @@ StepPriors FieldPriors::StepAt(double progress, double voxel_m) const {
 }
 
 PriorRays FieldPriors::RaysFor(const StepPriors& step) const {
-  return {step.Segments() || step.Normals() ? segments : nullptr, options.segment_share, step.points > 0.0 ? points : nullptr, options.point_share};
+  return {step.Segments() || step.Normals() ? segments : nullptr, options.segment_share, step.Points() ? points : nullptr, options.point_share};
 }
 
 }  // namespace skyquilt::worker

@@ -11,22 +11,23 @@ namespace skyquilt::worker {
 // The priors of one step: their weights and what is known of the surface.
 struct StepPriors {
   // Relative to the photo loss; 0: off. See PriorOptions.
-  double planar = 0.0, upright = 0.0, planes = 0.0, points = 0.0, normals = 0.0, orientation = 0.0;
+  double planar = 0.0, upright = 0.0, planes = 0.0, points = 0.0, free_space = 0.0, normals = 0.0, orientation = 0.0;
   double voxel_m = 0.0;                                          // finest voxel of the field
   const PointPlanes* known_planes = nullptr;                     // may be null
   const survey::DominantDirections* known_directions = nullptr;  // may be null
 
   bool Segments() const { return planar > 0.0 || upright > 0.0; }
+  bool Points() const { return points > 0.0 || free_space > 0.0; }
   bool Normals() const { return normals > 0.0 || orientation > 0.0; }
   // Whether it matters where rays end.
-  bool Distances() const { return Segments() || planes > 0.0 || points > 0.0 || Normals(); }
+  bool Distances() const { return Segments() || planes > 0.0 || Points() || Normals(); }
 };
 
 // Nothing by default. What is null or empty is not taught, whatever its weight.
 struct FieldPriors {
   PriorOptions options;
   const PhotoSegments* segments = nullptr;                 // of the field's photos; needed for options.Segments()
-  const DepthPoints* points = nullptr;                     // of the field; needed for options.points > 0
+  const DepthPoints* points = nullptr;                     // of the field; needed for options.Points()
   const PointPlanes* planes = nullptr;                     // of the field; needed for options.Planes()
   const survey::DominantDirections* directions = nullptr;  // of buildings, for options.upright
 

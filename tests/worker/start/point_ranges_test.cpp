@@ -79,18 +79,18 @@ class PointRangesTest : public ::testing::Test {
 
 constexpr std::array<uint8_t, 3> kBlue = {150, 180, 230}, kLamplight = {230, 215, 190};
 
-TEST_F(PointRangesTest, BoundTheSpaceBetweenHalfTheNearestPointAndOneAndAHalfOfTheFarthest) {
+TEST_F(PointRangesTest, BoundTheSpaceNearThePoints) {
   Photograph(kBlue);
   ASSERT_FALSE(ranges_.Empty());
   const PointRanges::Range& wall = ranges_.Of(TileOf(0.0, kWall, 5.0));
   EXPECT_TRUE(wall.Known());
   EXPECT_NEAR(wall.nearest, std::hypot(kWall, 3.0), 0.5);
-  EXPECT_NEAR(wall.near, 0.5 * static_cast<double>(wall.nearest), 1e-4);
-  EXPECT_NEAR(wall.far, 1.5 * static_cast<double>(wall.farthest), 1e-4);
+  EXPECT_NEAR(wall.near, 0.8 * static_cast<double>(wall.nearest), 1e-4);
+  EXPECT_NEAR(wall.far, 1.25 * static_cast<double>(wall.farthest), 1e-4);
   EXPECT_TRUE(ranges_.MayShow(0, {0.0, kWall, 5.0}, 0.0));
   EXPECT_FALSE(ranges_.MayShow(0, {0.0, 5.0, 2.5}, 0.0)) << "before the wall";
   EXPECT_FALSE(ranges_.MayShow(0, {0.0, 40.0, 5.0}, 0.0)) << "behind the wall";
-  EXPECT_TRUE(ranges_.MayShow(0, {0.0, 40.0, 5.0}, 12.0)) << "a ball that reaches back to it";
+  EXPECT_TRUE(ranges_.MayShow(0, {0.0, 40.0, 5.0}, 16.0)) << "a ball that reaches back to it";
 }
 
 TEST_F(PointRangesTest, PhotosThatLookDownHaveNone) {

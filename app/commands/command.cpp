@@ -28,7 +28,7 @@ struct NamedConfig {
 NamedConfig FindConfig(const std::string& config) {
   if (config.empty()) return {};
   // A folder with the name of a preset (for instance an output folder "fast") is not a configuration.
-  if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.files = {config}};
+  if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.files = {config}, .overrides = {}};
   const std::vector<std::string> presets = PresetNames();
   if (std::find(presets.begin(), presets.end(), config) == presets.end()) {
     const std::string nearest = config::Nearest(config, presets);
@@ -38,7 +38,7 @@ NamedConfig FindConfig(const std::string& config) {
   return {.is_preset = true, .starts_anew = config == "default", .files = {}, .overrides = PresetOverrides(config)};
 }
 
-// What comes after files, later ones win: the preset, --set, `flags`, --threads.
+// What comes after files: the preset, --set, `flags` and --threads. Later ones win.
 std::vector<config::Override> OverridesOf(const CommandState& state, const NamedConfig& named, const std::vector<config::Override>& flags) {
   std::vector<config::Override> overrides = named.overrides;
   for (const std::string& text : state.set) overrides.push_back(config::ParseOverride(text));
@@ -47,7 +47,7 @@ std::vector<config::Override> OverridesOf(const CommandState& state, const Named
   return overrides;
 }
 
-void TakeOver(const CommandState& state, const NamedConfig& named, const std::vector<config::Override>& flags, coordinator::Settings& settings) {
+void Apply(const CommandState& state, const NamedConfig& named, const std::vector<config::Override>& flags, coordinator::Settings& settings) {
   for (const std::filesystem::path& file : named.files) config::ReadToml(file, settings.AllSections());
   for (const config::Override& entry : OverridesOf(state, named, flags)) settings.Set(entry);
 }
@@ -64,7 +64,7 @@ coordinator::Settings CommandState::Load(const std::vector<std::filesystem::path
 coordinator::Settings CommandState::LoadOver(coordinator::Settings settings) const {
   const NamedConfig named = FindConfig(config);
   if (named.starts_anew) settings = {};
-  TakeOver(*this, named, {}, settings);
+  Apply(*this, named, {}, settings);
   settings.Check();
   return settings;
 }
@@ -77,7 +77,7 @@ std::optional<coordinator::Settings> CommandState::LoadForLevelPhotos(const std:
   // What these say about old options was said by Load.
   const base::LogLevel level = base::GetLogLevel();
   base::SetLogLevel(base::LogLevel::kError);
-  TakeOver(*this, named, flags, settings);
+  Apply(*this, named, flags, settings);
   base::SetLogLevel(level);
   return settings;
 }

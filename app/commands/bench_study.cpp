@@ -168,7 +168,7 @@ bench::StudyBench RunTradeoff(bench::Study& study, const StudyFlags& flags) {
   bench::TradeoffOptions options;
   const std::map<std::string, std::vector<double>> made_for = {
       {"fast", {1.0 / 3.0, 1.0, 3.0}}, {"default", {1.0 / 3.0, 1.0, 3.0, 9.0}}, {"quality", {1.0, 3.0, 9.0}}};
-  for (const std::string& name : PresetNames()) options.presets.push_back({name, PresetOverrides(name), made_for.at(name)});
+  for (const std::string& name : QualityPresets()) options.presets.push_back({name, PresetOverrides(name), made_for.at(name)});
   options.middle_budget_s = BudgetOf(flags, options.middle_budget_s, 8.0);
   if (flags.quick) {
     // Two points of one curve, one of the others.

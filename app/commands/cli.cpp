@@ -68,7 +68,8 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 void AddCommands(CLI::App& app, CommandState& state) {
-  app.add_option("--config", state.config, "TOML file with options, or a preset: fast, default, quality (see configs/)")->type_name("FILE|NAME");
+  app.add_option("--config", state.config, "TOML file with options, or a preset: fast, default, quality, level (see configs/)")
+      ->type_name("FILE|NAME");
   app.add_option("--set", state.set, "set one option, for instance train.levels=10; may be repeated")
       ->type_name("SECTION.KEY=VALUE")
       ->expected(1)

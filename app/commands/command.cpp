@@ -19,6 +19,7 @@ namespace {
 
 // The options set by --config: those of a file, or of a preset. When a file and a preset have this name, the file is used.
 struct NamedConfig {
+  bool is_preset = false;
   bool starts_anew = false;  // "default" replaces all values of the project's own configuration
   std::vector<std::filesystem::path> files;
   std::vector<config::Override> overrides;
@@ -27,14 +28,28 @@ struct NamedConfig {
 NamedConfig FindConfig(const std::string& config) {
   if (config.empty()) return {};
   // A folder with the name of a preset (for instance an output folder "fast") is not a configuration.
-  if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.starts_anew = false, .files = {config}, .overrides = {}};
+  if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.files = {config}, .overrides = {}};
   const std::vector<std::string> presets = PresetNames();
   if (std::find(presets.begin(), presets.end(), config) == presets.end()) {
     const std::string nearest = config::Nearest(config, presets);
     throw base::InputError(config, "no such file, and no preset of that name",
-                           nearest.empty() ? "Give a TOML file, or one of fast, default, quality" : "Did you mean '" + nearest + "'?");
+                           nearest.empty() ? "Give a TOML file, or one of " + base::Join(presets) : "Did you mean '" + nearest + "'?");
   }
-  return {.starts_anew = config == "default", .files = {}, .overrides = PresetOverrides(config)};
+  return {.is_preset = true, .starts_anew = config == "default", .files = {}, .overrides = PresetOverrides(config)};
+}
+
+// What comes after files: the preset, --set, `flags` and --threads. Later ones win.
+std::vector<config::Override> OverridesOf(const CommandState& state, const NamedConfig& named, const std::vector<config::Override>& flags) {
+  std::vector<config::Override> overrides = named.overrides;
+  for (const std::string& text : state.set) overrides.push_back(config::ParseOverride(text));
+  overrides.insert(overrides.end(), flags.begin(), flags.end());
+  if (!state.threads.empty()) overrides.push_back({"run.threads", state.threads});
+  return overrides;
+}
+
+void Apply(const CommandState& state, const NamedConfig& named, const std::vector<config::Override>& flags, coordinator::Settings& settings) {
+  for (const std::filesystem::path& file : named.files) config::ReadToml(file, settings.AllSections());
+  for (const config::Override& entry : OverridesOf(state, named, flags)) settings.Set(entry);
 }
 
 }  // namespace
@@ -43,22 +58,27 @@ coordinator::Settings CommandState::Load(const std::vector<std::filesystem::path
   const NamedConfig named = FindConfig(config);
   std::vector<std::filesystem::path> all_files = named.starts_anew ? std::vector<std::filesystem::path>() : files;
   all_files.insert(all_files.end(), named.files.begin(), named.files.end());
-  std::vector<config::Override> overrides = named.overrides;
-  for (const std::string& text : set) overrides.push_back(config::ParseOverride(text));
-  overrides.insert(overrides.end(), flags.begin(), flags.end());
-  if (!threads.empty()) overrides.push_back({"run.threads", threads});
-  return LoadSettings(all_files, overrides);
+  return LoadSettings(all_files, OverridesOf(*this, named, flags));
 }
 
 coordinator::Settings CommandState::LoadOver(coordinator::Settings settings) const {
   const NamedConfig named = FindConfig(config);
   if (named.starts_anew) settings = {};
-  const config::Sections sections = settings.AllSections();
-  for (const std::filesystem::path& file : named.files) config::ReadToml(file, sections);
-  for (const config::Override& entry : named.overrides) settings.Set(entry);
-  for (const std::string& text : set) settings.Set(config::ParseOverride(text));
-  if (!threads.empty()) settings.Set({"run.threads", threads});
+  Apply(*this, named, {}, settings);
   settings.Check();
+  return settings;
+}
+
+std::optional<coordinator::Settings> CommandState::LoadForLevelPhotos(const std::vector<config::Override>& flags) const {
+  const NamedConfig named = FindConfig(config);
+  if (named.is_preset) return std::nullopt;
+  coordinator::Settings settings;
+  for (const config::Override& entry : PresetOverrides(kLevelPreset)) settings.Set(entry);
+  // What these say about old options was said by Load.
+  const base::LogLevel level = base::GetLogLevel();
+  base::SetLogLevel(base::LogLevel::kError);
+  Apply(*this, named, flags, settings);
+  base::SetLogLevel(level);
   return settings;
 }
 

@@ -37,6 +37,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
     state.run_command = [&state, flags, overrides] {
       coordinator::Settings settings = state.Load({}, *overrides);
       coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags->out), std::move(settings), flags->restart);
+      pipeline.level_settings = state.LoadForLevelPhotos(*overrides);
       coordinator::PrepareStage(pipeline, flags->photos, flags->model);
     };
   });

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/command.h"
+#include "coordinator/stages/level_settings.h"
 #include "coordinator/stages/stage.h"
 #include "core/base/errors.h"
 #include "viewer/assets.h"
@@ -46,6 +47,8 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
     }
   }
   coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
+  pipeline.level_settings = state.LoadForLevelPhotos(overrides);
+  coordinator::RecallLevelSettings(pipeline);
   coordinator::RequireSameConfiguration(pipeline, "prepare");
   coordinator::RunStages(pipeline, flags.photos, flags.model);
   coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);

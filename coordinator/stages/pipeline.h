@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct Pipeline {
   bool restart = false;  // remove the results of the first stage that is called and of all later stages
   bool quiet = false;
   bool verbose = false;
+  // Taken instead of `settings` once the photos are known to look level (level_settings.h); differs in no option of "prepare". None: `settings` hold
+  // for all photos.
+  std::optional<Settings> level_settings = {};
   // Inputs of "prepare". model may be empty: COLMAP is run, or the photos are a simulated survey.
   std::filesystem::path photos = {};
   std::filesystem::path model = {};
@@ -41,7 +45,8 @@ void RequireSameConfiguration(Pipeline& pipeline, const std::string& first);
 
 // Makes a simulated survey in its own folder.
 void SimulateStage(Pipeline& pipeline, const std::filesystem::path& folder);
-// Also makes the first picture (first_picture.h) as soon as it can, unless there is one.
+// Also chooses between settings and level_settings when it makes a survey, and writes level_settings to config.toml, for later commands. Makes the
+// first picture (first_picture.h) as soon as it can, unless there is one.
 void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model);
 void PartitionStage(Pipeline& pipeline);
 // Blocks that failed after all their tries have ok = false in the report; the others are finished and saved.

@@ -6,7 +6,9 @@
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/train_all.h"
 #include "coordinator/stages/first_picture.h"
+#include "coordinator/stages/level_settings.h"
 #include "core/base/amounts.h"
+#include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/thread_pool.h"
 #include "core/scene/scene.h"
@@ -74,7 +76,8 @@ std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const auto show = [&](const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known) {
     MakeFirstPicture(pipeline, survey, poses_known, threads);
   };
-  prepare::Prepare(input, pipeline.settings.prepare, threads, pipeline.comm.size() > 1 ? &ranks : nullptr, show);
+  const survey::Survey survey = prepare::Prepare(input, pipeline.settings.prepare, threads, pipeline.comm.size() > 1 ? &ranks : nullptr, show);
+  if (UseLevelSettings(pipeline, survey)) base::WriteFileAtomically(pipeline.project.ConfigFile(), pipeline.settings.Toml());
   return StageStamp::kDone;
 }
 

@@ -6,11 +6,14 @@
 
 #include "app/commands/command.h"
 #include "app/commands/describe.h"
+#include "app/settings/load_settings.h"
+#include "app/settings/presets.h"
 #include "bench/numerics/numerics_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "tests/support/call_program.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::app {
 namespace {
@@ -79,6 +82,56 @@ TEST(CommandLine, PresetsAreChosenByName) {
   EXPECT_EQ(state.Load({}, {}).context.levels, 6);
   EXPECT_EQ(state.Load({}, {}).context.features, 2);
   std::filesystem::remove(own);
+}
+
+TEST(CommandLine, LevelPhotosGetAPresetBelowAllThatIsGiven) {
+  const TemporaryFolder folder;
+  CommandState state;
+  coordinator::Settings preset;
+  for (const config::Override& entry : PresetOverrides("level")) {
+    EXPECT_FALSE(entry.key.starts_with("simulate.") || entry.key.starts_with("prepare."))
+        << entry.key << " is read before it is known how photos look";
+    preset.Set(entry);
+  }
+  EXPECT_NO_THROW(preset.Check());
+  EXPECT_EQ(state.LoadForLevelPhotos({})->Flat(), preset.Flat());
+  const auto video_s = [&state](const std::vector<config::Override>& flags) { return state.LoadForLevelPhotos(flags)->products.video_seconds; };
+  state.config = (folder.path() / "mine.toml").string();
+  base::WriteFileAtomically(state.config, "[products]\nvideo_seconds = 5.0\n");
+  EXPECT_EQ(video_s({}), 5.0) << "the default, but given";
+  EXPECT_EQ(state.LoadForLevelPhotos({})->products.video_path, preset.products.video_path);
+  state.set = {"products.video_seconds=6"};
+  EXPECT_EQ(video_s({}), 6.0);
+  EXPECT_EQ(video_s({{"products.video_seconds", "7"}}), 7.0);
+  for (const std::string& name : PresetNames()) {
+    state.config = name;
+    EXPECT_FALSE(state.LoadForLevelPhotos({})) << name;
+  }
+}
+
+TEST(CommandLine, PrepareChoosesThePresetOfLevelPhotosForLaterCommands) {
+  const TemporaryFolder folder;
+  const std::string facade = folder.path() / "facade";
+  const Called simulated = CallProgram({"simulate", "hamlet", "-o", facade, "--set", "simulate.flight=facade", "--set", "simulate.photos=4", "--set",
+                                        "simulate.image_width=64", "--set", "simulate.samples_per_pixel=1"});
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  // Prepares a project; returns the settings that commands of later stages begin with.
+  const auto prepared = [&](const std::string& name, const std::vector<std::string>& words, bool chosen) {
+    std::vector<std::string> all = {"prepare", facade, "-o", folder.path() / name};
+    all.insert(all.end(), words.begin(), words.end());
+    const Called called = CallProgram(all);
+    EXPECT_EQ(called.status, 0) << called.err;
+    EXPECT_EQ(called.err.find("photos look level: settings of the preset level are used") != std::string::npos, chosen) << called.err;
+    return LoadSettings({folder.path() / name / "config.toml"}, {});
+  };
+  EXPECT_EQ(prepared("chosen", {}, true).Flat(), CommandState().LoadForLevelPhotos({})->Flat());
+  EXPECT_EQ(prepared("not", {"--config", "default"}, false).Flat(), coordinator::Settings().Flat());
+  const coordinator::Settings own = prepared("own", {"--set", "products.video_seconds=6"}, true);
+  EXPECT_EQ(own.products.video_seconds, 6.0);
+  EXPECT_EQ(own.products.video_path, "cameras");
+  // What later commands wrote stays when there is nothing to prepare.
+  base::WriteFileAtomically(folder.path() / "chosen" / "config.toml", "[products]\nvideo_seconds = 3.0\n");
+  EXPECT_EQ(prepared("chosen", {}, false).products.video_seconds, 3.0);
 }
 
 TEST(CommandLine, MissingThingsAreInputErrors) {

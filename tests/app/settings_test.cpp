@@ -111,7 +111,7 @@ TEST(Settings, PresetFilesParseAndTheDefaultOneIsTheDefaults) {
   ASSERT_TRUE(std::filesystem::exists(folder / "default.toml"));
   EXPECT_EQ(LoadSettings({folder / "default.toml"}, {}).Flat(), defaults.Flat());
   EXPECT_EQ(base::ReadFile(folder / "default.toml"), defaults.Toml()) << "make it again with: skyquilt info --defaults > configs/default.toml";
-  for (const char* name : {"fast.toml", "quality.toml"}) {
+  for (const char* name : {"fast.toml", "quality.toml", "level.toml"}) {
     coordinator::Settings preset = LoadSettings({folder / name}, {});
     EXPECT_NE(preset.Flat(), defaults.Flat()) << name;
     EXPECT_EQ(preset.Flat().size(), defaults.Flat().size());

@@ -95,14 +95,14 @@ TEST(CommandLine, LevelPhotosGetAPresetBelowAllThatIsGiven) {
   }
   EXPECT_NO_THROW(preset.Check());
   EXPECT_EQ(state.LoadForLevelPhotos({})->Flat(), preset.Flat());
-  const auto video_s = [&state](const std::vector<config::Override>& flags) { return state.LoadForLevelPhotos(flags)->products.video_seconds; };
+  const auto path = [&state](const std::vector<config::Override>& flags) { return state.LoadForLevelPhotos(flags)->products.video_path; };
   state.config = (folder.path() / "mine.toml").string();
-  base::WriteFileAtomically(state.config, "[products]\nvideo_seconds = 5.0\n");
-  EXPECT_EQ(video_s({}), 5.0) << "the default, but given";
-  EXPECT_EQ(state.LoadForLevelPhotos({})->products.video_path, preset.products.video_path);
-  state.set = {"products.video_seconds=6"};
-  EXPECT_EQ(video_s({}), 6.0);
-  EXPECT_EQ(video_s({{"products.video_seconds", "7"}}), 7.0);
+  base::WriteFileAtomically(state.config, "[products]\nvideo_path = \"orbit\"\n");
+  EXPECT_EQ(path({}), "orbit") << "the default, but given";
+  EXPECT_EQ(state.LoadForLevelPhotos({})->priors.points, preset.priors.points);
+  state.set = {"products.video_path=flyover"};
+  EXPECT_EQ(path({}), "flyover");
+  EXPECT_EQ(path({{"products.video_path", "orbit"}}), "orbit");
   for (const std::string& name : PresetNames()) {
     state.config = name;
     EXPECT_FALSE(state.LoadForLevelPhotos({})) << name;

@@ -46,7 +46,7 @@ std::vector<float> SkyOf(const RaySource& source, const survey::Survey& survey, 
     const std::vector<Eigen::Vector3f> colors = source.TileColors(static_cast<int>(photo));
     for (const Tile& tile : TrainingTiles(survey, {static_cast<int>(photo)})) {
       const Eigen::Vector3f& srgb = colors[static_cast<size_t>(tile.row) * kTileColumns + static_cast<size_t>(tile.column)];
-      if (!ranges.Of(tile).sky || !srgb.allFinite()) continue;
+      if (!ranges.Of(tile).Sky() || !srgb.allFinite()) continue;
       Eigen::Vector3d origin, direction;
       source.RayThrough(tile.photo, source.TileCentre(tile), &origin, &direction);
       const Eigen::Vector2d shares = scene::SkyShares(direction);

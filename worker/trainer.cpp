@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include "worker/trainer.h"
 
 #include <algorithm>
@@ -105,7 +104,9 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
   const PointRanges ranges(*job.survey, source, area.photos, threads);
   const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, area.photos, surface, ranges, job.min_views, threads);
-  source.SetTiles(tiles, {}, 0.0);
+  std::vector<Tile> shown, sky;
+  for (const Tile& tile : tiles) (ranges.OpenSky(tile) ? sky : shown).push_back(tile);
+  source.SetTiles(std::move(shown), std::move(sky), job.options.empty_ray_share);
   if (!source.HasRays()) {
     TrainResult none;
     none.reason = "no training photo sees the survey area; check the poses in the survey";
@@ -115,14 +116,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   source.UpdateExposures();
   render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active(), PriorOptions::Off());
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
-  PriorOptions prior_options = PriorOptions::Off();
-  if (getenv("SQ_CTX") != nullptr && !ranges.Empty() && !job.luminance.On()) {
-    prior_options = job.priors;
-    prior_options.planar = prior_options.upright = prior_options.planes = prior_options.normals = prior_options.orientation = 0.0;
-  }
-  const DepthPoints points = prior_options.Points() ? DepthPoints(*job.survey, source, area.box) : DepthPoints();
-  FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, {prior_options, nullptr, &points, nullptr, nullptr},
-                       threads);
+  FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, {}, threads);
   SessionRecord record;
   if (saved) {
     LoadSession(*saved, target, trainer, &record, &extras);
@@ -203,7 +197,7 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
       } else {
         StartFromRanges(source, ranges, tiles, target);
       }
-      if (context != nullptr) StartFromSurfaces(source, *job.survey, tiles, *context, target);
+      if (context != nullptr) StartFromSurfaces(source, ranges, *job.survey, tiles, *context, target);
     }
     trainer.MeasureFootprints();
   }

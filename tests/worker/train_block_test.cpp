@@ -170,7 +170,7 @@ TEST_F(TrainBlockTest, BandsOfTheContextAreWhereABlockStarts) {
   target.occupancy = field::OccupancyGrid::Make(extent, 0.5 * target.map.units_per_metre(), 4'000'000);
   survey_.points.emplace_back();
   survey_.points.back().x_in_enu = {4.2, 4.2, 12.2};
-  StartFromSurfaces(source, survey_, TrainingTiles(survey_, photos), context, target);
+  StartFromSurfaces(source, {}, survey_, TrainingTiles(survey_, photos), context, target);
   const auto occupied = [&](double x, double y, double z) {
     const Eigen::Vector3f unit = target.map.UnitFromEnu({x, y, z});
     return target.occupancy.occupied[static_cast<size_t>(target.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] != 0;

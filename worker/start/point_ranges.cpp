@@ -21,7 +21,8 @@ constexpr double kNearestShare = 0.02;  // of a photo's points: so many may be w
 // Sky is at least this high above the horizon (sine), this bright, and blue at least by this part of red. Ceilings under lamps are reddish.
 constexpr double kAboveHorizon = 0.03;
 constexpr float kSkyBrightness = 0.45F, kSkyBlue = 1.0F;
-constexpr float kSkyStep = 0.12F;  // largest difference to the tile above it, of a colour
+// Largest differences of a colour: to the tile above it, and to a tile of sky beside it where points are close.
+constexpr float kSkyStep = 0.12F, kSameSkyStep = 0.05F;
 
 size_t IndexOf(int row, int column) {
   return static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column);
@@ -55,12 +56,12 @@ PointRanges::PointRanges(const survey::Survey& survey, const RaySource& source, 
   }
   threads.ParallelFor(static_cast<int64_t>(training.size()), [&](int64_t i, int) {
     const int photo = training[static_cast<size_t>(i)];
-    FindRanges(survey, source, photo, observed[static_cast<size_t>(photo)]);
-    FindSky(source, photo);
+    FindSky(source, photo, FindRanges(survey, source, photo, observed[static_cast<size_t>(photo)]));
   });
 }
 
-void PointRanges::FindRanges(const survey::Survey& survey, const RaySource& source, int photo, const std::vector<uint32_t>& observed) {
+std::vector<PointRanges::Points> PointRanges::FindRanges(const survey::Survey& survey, const RaySource& source, int photo,
+                                                         const std::vector<uint32_t>& observed) {
   const geo::Rigid3d& cam_from_enu = cam_from_enu_[static_cast<size_t>(photo)];
   const camera::Camera& camera = source.CameraOf(photo);
   std::array<std::array<float, 2>, kTiles> own;
@@ -77,11 +78,12 @@ void PointRanges::FindRanges(const survey::Survey& survey, const RaySource& sour
     farthest = std::max(farthest, distance);
     distances.push_back(distance);
   }
+  std::vector<Points> points(kTiles);
   const float near = distances.empty() ? 0.0F : kNearSlack * base::NearestRankQuantile(distances, kNearestShare);
   for (int row = 0; row < kTileRows; ++row) {
     for (int column = 0; column < kTileColumns; ++column) {
       Range& range = ranges_[static_cast<size_t>(first_[static_cast<size_t>(photo)]) + IndexOf(row, column)];
-      range = {near, kInfinity, 0.0F, kInfinity, false};
+      range = {near, kInfinity, 0.0F, kInfinity, 0};
       bool close = false;
       for (const int reach : kReaches) {
         for (int y = std::max(0, row - reach); y <= std::min(kTileRows - 1, row + reach); ++y) {
@@ -96,12 +98,14 @@ void PointRanges::FindRanges(const survey::Survey& survey, const RaySource& sour
         range.far = kFarSlack * range.farthest;
         break;
       }
-      range.sky = !close;  // so far: it may be
+      const bool has_own = own[IndexOf(row, column)][1] > 0.0F;
+      points[IndexOf(row, column)] = has_own ? Points::kInside : close ? Points::kClose : Points::kNone;
     }
   }
+  return points;
 }
 
-void PointRanges::FindSky(const RaySource& source, int photo) {
+void PointRanges::FindSky(const RaySource& source, int photo, const std::vector<Points>& points) {
   const std::vector<Eigen::Vector3f> colors = source.TileColors(photo);
   Range* ranges = ranges_.data() + first_[static_cast<size_t>(photo)];
   // Which way is up in the image: towards the edge at which rays rise most.
@@ -115,6 +119,11 @@ void PointRanges::FindSky(const RaySource& source, int photo) {
   const bool along_rows = std::abs(by_row) >= std::abs(by_column);
   const bool from_first = (along_rows ? by_row : by_column) > 0.0;
   const int lines = along_rows ? kTileColumns : kTileRows, length = along_rows ? kTileRows : kTileColumns;
+  const auto may_be_sky = [&](int row, int column) {
+    const Eigen::Vector3f& srgb = colors[IndexOf(row, column)];
+    return rise(row, column) > kAboveHorizon && srgb.mean() >= kSkyBrightness && srgb.z() >= kSkyBlue * srgb.x();
+  };
+  std::vector<Tile> found;
   for (int line = 0; line < lines; ++line) {
     bool sky = true;
     Eigen::Vector3f above;
@@ -122,12 +131,46 @@ void PointRanges::FindSky(const RaySource& source, int photo) {
       const int step = from_first ? i : length - 1 - i;
       const int row = along_rows ? step : line, column = along_rows ? line : step;
       const Eigen::Vector3f& srgb = colors[IndexOf(row, column)];
-      Range& range = ranges[IndexOf(row, column)];
-      sky = sky && range.sky && rise(row, column) > kAboveHorizon && srgb.mean() >= kSkyBrightness && srgb.z() >= kSkyBlue * srgb.x() &&
+      sky = sky && points[IndexOf(row, column)] == Points::kNone && may_be_sky(row, column) &&
             (i == 0 || (srgb - above).cwiseAbs().maxCoeff() <= kSkyStep);
-      range.sky = sky;
       above = srgb;
+      if (!sky) continue;
+      ranges[IndexOf(row, column)].open_sky = 1;
+      found.push_back({photo, static_cast<int16_t>(column), static_cast<int16_t>(row)});
     }
+  }
+  // From there up to what stands before it, where points are close.
+  while (!found.empty()) {
+    const Tile from = found.back();
+    found.pop_back();
+    for (const auto& [down, right] : {std::array<int, 2>{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const int row = from.row + down, column = from.column + right;
+      if (row < 0 || row >= kTileRows || column < 0 || column >= kTileColumns) continue;
+      Range& range = ranges[IndexOf(row, column)];
+      if (range.Sky() || points[IndexOf(row, column)] == Points::kInside || !may_be_sky(row, column) ||
+          !((colors[IndexOf(row, column)] - colors[IndexOf(from.row, from.column)]).cwiseAbs().maxCoeff() <= kSameSkyStep)) {
+        continue;
+      }
+      range.open_sky = 1;
+      found.push_back({photo, static_cast<int16_t>(column), static_cast<int16_t>(row)});
+    }
+  }
+  for (int reach = 1; reach < std::min(kTileRows, kTileColumns); ++reach) {
+    bool any = false;
+    for (int row = 0; row < kTileRows; ++row) {
+      for (int column = 0; column < kTileColumns; ++column) {
+        Range& range = ranges[IndexOf(row, column)];
+        if (range.open_sky < reach) continue;
+        bool open = true;
+        for (int y = std::max(0, row - 1); y <= std::min(kTileRows - 1, row + 1); ++y) {
+          for (int x = std::max(0, column - 1); x <= std::min(kTileColumns - 1, column + 1); ++x)
+            open = open && ranges[IndexOf(y, x)].open_sky >= reach;
+        }
+        if (open) range.open_sky = reach + 1;
+        any = any || open;
+      }
+    }
+    if (!any) break;
   }
 }
 
@@ -146,6 +189,9 @@ bool PointRanges::MayShow(int photo, const Eigen::Vector3d& x_in_enu, double rad
   };
   const Range& range = Of({photo, along(pixel->x(), camera.width, kTileColumns), along(pixel->y(), camera.height, kTileRows)});
   const double distance = x_in_cam.norm();
+  // Before the sky there is nothing. The ball's image is this many tiles wide on each side.
+  const double reach = radius_m * camera.FocalX() / std::max(distance, 1e-9) * kTileColumns / camera.width;
+  if (range.open_sky > 1.0 + reach) return false;
   return distance >= static_cast<double>(range.near) - radius_m && distance <= static_cast<double>(range.far) + radius_m;
 }
 

@@ -19,8 +19,10 @@ class PointRanges {
     float nearest = 0.0F;  // of the points around the tile; infinite: none
     float farthest = 0.0F;
     float far = 0.0F;  // 1.25 times that of the farthest; infinite: none
-    // From here to the upper edge of the photo there are no points close by, and colours are bright, not reddish and much alike; above the horizon.
-    bool sky = false;
+    // Tiles from here to the nearest that shows anything but sky; 0: this one does. There are no points in tiles of sky, they are above the horizon,
+    // and their colours are bright, not reddish and much alike up to the upper edge of the photo.
+    int open_sky = 0;
+    bool Sky() const { return open_sky > 0; }
     bool Known() const;  // whether points are around it
   };
 
@@ -32,13 +34,17 @@ class PointRanges {
   bool Empty() const { return ranges_.empty(); }
   // Of a training photo's tile.
   const Range& Of(const Tile& tile) const;
+  // Whether every pixel of the tile shows sky, as those around it do, too. False where these ranges are empty.
+  bool OpenSky(const Tile& tile) const { return !Empty() && Of(tile).open_sky > 1; }
   // Whether the photo's surfaces may be at a ball around a place that its image shows: neither nearer nor farther than the range there. True for
   // photos that were not given.
   bool MayShow(int photo, const Eigen::Vector3d& x_in_enu, double radius_m) const;
 
  private:
-  void FindRanges(const survey::Survey& survey, const RaySource& source, int photo, const std::vector<uint32_t>& observed);
-  void FindSky(const RaySource& source, int photo);
+  // Whether a tile has points in it, or around it.
+  enum class Points : uint8_t { kNone, kClose, kInside };
+  std::vector<Points> FindRanges(const survey::Survey& survey, const RaySource& source, int photo, const std::vector<uint32_t>& observed);
+  void FindSky(const RaySource& source, int photo, const std::vector<Points>& points);
 
   std::vector<int32_t> first_;  // per photo of the survey: of its tiles in ranges_; -1: none
   std::vector<Range> ranges_;   // [row][column] of each photo

@@ -149,14 +149,14 @@ void StartFromRanges(const RaySource& source, const PointRanges& ranges, const s
   std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
   for (const Tile& tile : tiles) {
     const PointRanges::Range& range = ranges.Of(tile);
-    if (!range.sky) OccupyAlong(source, tile, static_cast<double>(range.near), static_cast<double>(range.far), target);
+    if (!range.Sky()) OccupyAlong(source, tile, static_cast<double>(range.near), static_cast<double>(range.far), target);
   }
   grid.Dilate(1);  // between tile centres
   for (size_t i = 0; i < grid.tau.size(); ++i) grid.tau[i] = grid.occupied[i] != 0 ? kStartTau : std::min(grid.tau[i], 0.0F);
 }
 
-void StartFromSurfaces(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
-                       render::TrainedField& target) {
+void StartFromSurfaces(const RaySource& source, const PointRanges& ranges, const survey::Survey& survey, const std::vector<Tile>& tiles,
+                       const LoadedContext& context, render::TrainedField& target) {
   if (!context.HasSurfaceIntervals(survey)) return;
   field::OccupancyGrid& grid = target.occupancy;
   const std::vector<uint8_t> before = grid.occupied;
@@ -164,6 +164,7 @@ void StartFromSurfaces(const RaySource& source, const survey::Survey& survey, co
   // The context's surfaces are blurred by about one of its marching steps.
   const double pad_m = context.field.step_m;
   for (const Tile& tile : tiles) {
+    if (ranges.OpenSky(tile)) continue;
     const SurfaceInterval& band = context.Band(tile.photo, tile.row, tile.column);
     OccupyAlong(source, tile, static_cast<double>(band.front) - pad_m, static_cast<double>(band.back) + pad_m, target);
   }

@@ -31,7 +31,7 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
 void StartFromRanges(const RaySource& source, const PointRanges& ranges, const std::vector<Tile>& tiles, render::TrainedField& target);
 // Keeps only cells near the surfaces that the context shows in the given tiles (surface_band.h), and cells with sparse points. Other cells are free
 // until surfaces grow into them. Does nothing when the context has no bands.
-void StartFromSurfaces(const RaySource& source, const survey::Survey& survey, const std::vector<Tile>& tiles, const LoadedContext& context,
-                       render::TrainedField& target);
+void StartFromSurfaces(const RaySource& source, const PointRanges& ranges, const survey::Survey& survey, const std::vector<Tile>& tiles,
+                       const LoadedContext& context, render::TrainedField& target);
 
 }  // namespace skyquilt::worker

@@ -70,6 +70,8 @@ class TileUse {
       : target_(target), context_(context), ranges_(ranges), source_(source), photo_(photo) {}
 
   Use Of(const Tile& tile) {
+    // The field is transparent before the sky.
+    if (ranges_.OpenSky(tile)) return Interval(tile.row, tile.column, nullptr, nullptr).Empty() ? Use::kNone : Use::kEmpty;
     if (context_ == nullptr) return Interval(tile.row, tile.column, nullptr, nullptr).Empty() ? Use::kNone : Use::kInside;
     // A tile is inside when its own or a neighbouring tile's surface is inside the block's ground plan.
     bool any_inside = false, all_behind = true;
@@ -102,7 +104,7 @@ class TileUse {
     if (!std::isfinite(depth)) {
       // The context shows no surface: inside when the ray leaves the box through its bottom.
       sight.inside = !interval.Empty() && (ranges_.Empty() ? o.z() + interval.t_far * d.z() <= low.z() + 1e-6
-                                                           : !ranges_.Of({photo_, static_cast<int16_t>(column), static_cast<int16_t>(row)}).sky);
+                                                           : !ranges_.Of({photo_, static_cast<int16_t>(column), static_cast<int16_t>(row)}).Sky());
       return sight;
     }
     const Eigen::Vector3d p = o + depth * d;

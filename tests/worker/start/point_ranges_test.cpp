@@ -11,6 +11,7 @@
 #include "tests/support/temporary_folder.h"
 #include "worker/make_background.h"
 #include "worker/start/starting_occupancy.h"
+#include "worker/start/surface_interval.h"
 #include "worker/start/view_count.h"
 
 namespace skyquilt::worker {
@@ -100,11 +101,41 @@ TEST_F(PointRangesTest, PhotosThatLookDownHaveNone) {
 
 TEST_F(PointRangesTest, SkyIsBrightAndNotReddishAboveAllPoints) {
   Photograph(kBlue);
-  EXPECT_TRUE(ranges_.Of(TileOf(0.0, kWall, 16.5)).sky);
-  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 5.0)).sky);
-  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, -12.0)).sky) << "below the horizon";
+  EXPECT_TRUE(ranges_.Of(TileOf(0.0, kWall, 16.5)).Sky());
+  EXPECT_TRUE(ranges_.Of(TileOf(0.0, kWall, 10.8)).Sky()) << "points are close, but the colour is that of the sky above";
+  EXPECT_FALSE(ranges_.OpenSky(TileOf(0.0, kWall, 10.8))) << "the wall is beside it";
+  EXPECT_TRUE(ranges_.OpenSky(TileOf(0.0, kWall, 16.5)));
+  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 5.0)).Sky());
+  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, -12.0)).Sky()) << "below the horizon";
   Photograph(kLamplight);
-  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 16.5)).sky) << "a ceiling";
+  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 16.5)).Sky()) << "a ceiling";
+}
+
+TEST_F(PointRangesTest, NothingIsBeforeTheSky) {
+  Photograph(kBlue);
+  const Eigen::Vector3d before_sky(0.0, 12.0, 2.0 + 12.0 * 14.5 / kWall);
+  EXPECT_FALSE(ranges_.MayShow(0, before_sky, 0.0));
+  EXPECT_FALSE(ranges_.MayShow(0, 2.0 * before_sky, 0.1));
+  EXPECT_TRUE(ranges_.MayShow(0, {0.0, kWall, 14.0}, 6.0)) << "a ball that reaches down to the wall";
+}
+
+TEST_F(PointRangesTest, FieldsLearnToBeTransparentBeforeTheSky) {
+  Photograph(kBlue);
+  render::TrainedField f;
+  f.map = encoding::SpaceMap::Box({-30.0, -2.0, -4.0}, {46.0, 40.0, 40.0});
+  ChooseTiles(survey_, TrainingTiles(survey_, {0, 1}), f, nullptr, ranges_, 0.25, *source_, threads_);
+  base::Random random(1, 2);
+  int empty = 0, high = 0;
+  for (int i = 0; i < 400; ++i) {
+    PixelRay ray;
+    ASSERT_TRUE(source_->Draw(random, PhotoPyramid(), &ray));
+    const bool above_wall = ray.direction_enu.z() * kWall > 8.0 * ray.direction_enu.y();
+    empty += ray.empty ? 1 : 0;
+    EXPECT_TRUE(!ray.empty || above_wall);
+    high += !ray.empty && ray.direction_enu.z() * kWall > 11.0 * ray.direction_enu.y() ? 1 : 0;
+  }
+  EXPECT_NEAR(empty, 100, 35);
+  EXPECT_EQ(high, 0) << "sky is never taken for something that stands there";
 }
 
 TEST_F(PointRangesTest, TilesThatOnePhotoShowsAreLeftOut) {

@@ -17,8 +17,9 @@ struct PriorOptions {
   double free_space = 0.0;   // such rays lose no light well before their point (AddFreeSpaceLoss)
   double normals = 0.0;      // normals of the density, of a predicting head and of planes of sparse points agree (worker/losses/normal_loss.h)
   double orientation = 0.0;  // the density's normals face the camera
-  // The weights are 0 up to the share `from` of the budget and rise linearly to their full size at `until`. Those of points and free_space fall linearly from there
-  // to 0 at `points_end`: points bring surfaces near to where they belong, but in the end make them thinner than the steps that sample them.
+  // The weights are 0 up to the share `from` of the budget and rise linearly to their full size at `until`. Those of points and free_space fall
+  // linearly from there to 0 at `points_end`: points bring surfaces near to where they belong, but in the end make them thinner than the steps that
+  // sample them.
   double from = 0.3;
   double until = 0.6;
   double points_end = 0.8;

@@ -107,9 +107,8 @@ TEST_F(PriorsTest, WithoutWeightsNothingChanges) {
   EXPECT_EQ(Bytes("a.h5"), Bytes("c.h5"));
   // Each alone does something; planes of points, which need surfaces that are nearly opaque, only later (PlanesOfPointsMoveTheSurface).
   int run = 0;
-  const std::vector<double PriorOptions::*> weights = {&PriorOptions::planar, &PriorOptions::upright, &PriorOptions::points, &PriorOptions::free_space,
-                                                       &PriorOptions::normals,
-                                                       &PriorOptions::orientation};
+  const std::vector<double PriorOptions::*> weights = {&PriorOptions::planar,     &PriorOptions::upright, &PriorOptions::points,
+                                                       &PriorOptions::free_space, &PriorOptions::normals, &PriorOptions::orientation};
   for (const auto weight : weights) {
     PriorOptions one = AllPriors();
     one.planes = 0.0;

@@ -1,5 +1,5 @@
-// Losses of rays towards a known point. The first concentrates the compositing weights of a ray around a known distance of uncertain size (Deng et al. 2022, DS-NeRF, eq. 6: the divergence of the
-// ray's distribution from a normal distribution; sigma enters squared).
+// Losses of rays towards a known point. The first concentrates the compositing weights of a ray around a known distance of uncertain size (Deng et
+// al. 2022, DS-NeRF, eq. 6: the divergence of the ray's distribution from a normal distribution; sigma enters squared).
 #pragma once
 
 #include <cmath>

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <numeric>
 
 #include "core/base/order_statistics.h"
 #include "core/survey/view_kind.h"
@@ -23,6 +25,10 @@ constexpr double kAboveHorizon = 0.03;
 constexpr float kSkyBrightness = 0.45F, kSkyBlue = 1.0F;
 // Largest differences of a colour: to the tile above it, and to a tile of sky beside it where points are close.
 constexpr float kSkyStep = 0.12F, kSameSkyStep = 0.05F;
+// Where such a share of the sky has points above it, it is the walls of a room.
+constexpr double kIndoors = 0.25;
+constexpr size_t kDirections = 180;  // all round
+constexpr size_t kMostPointsAbove = 20'000;
 
 size_t IndexOf(int row, int column) {
   return static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column);
@@ -58,6 +64,11 @@ PointRanges::PointRanges(const survey::Survey& survey, const RaySource& source, 
     const int photo = training[static_cast<size_t>(i)];
     FindSky(source, photo, FindRanges(survey, source, photo, observed[static_cast<size_t>(photo)]));
   });
+  if (IsIndoors(survey, source, training, threads)) {
+    for (Range& range : ranges_) range.open_sky = 0;
+  } else {
+    threads.ParallelFor(static_cast<int64_t>(training.size()), [&](int64_t i, int) { FindOpenSky(training[static_cast<size_t>(i)]); });
+  }
 }
 
 std::vector<PointRanges::Points> PointRanges::FindRanges(const survey::Survey& survey, const RaySource& source, int photo,
@@ -155,6 +166,39 @@ void PointRanges::FindSky(const RaySource& source, int photo, const std::vector<
       found.push_back({photo, static_cast<int16_t>(column), static_cast<int16_t>(row)});
     }
   }
+}
+
+bool PointRanges::IsIndoors(const survey::Survey& survey, const RaySource& source, const std::vector<int>& photos, base::ThreadPool& threads) const {
+  const size_t stride = survey.points.size() / kMostPointsAbove + 1;
+  const auto bin_of = [](const Eigen::Vector3d& direction) {
+    constexpr double kBinsPerRad = kDirections / (2.0 * std::numbers::pi);
+    return std::min(static_cast<size_t>((std::atan2(direction.y(), direction.x()) + std::numbers::pi) * kBinsPerRad), kDirections - 1);
+  };
+  std::vector<int> sky(photos.size(), 0), below(photos.size(), 0);
+  threads.ParallelFor(static_cast<int64_t>(photos.size()), [&](int64_t i, int) {
+    const int photo = photos[static_cast<size_t>(i)];
+    const Eigen::Vector3d eye = cam_from_enu_[static_cast<size_t>(photo)].OriginInSource();
+    std::array<double, kDirections> highest;
+    highest.fill(-1.0);
+    for (size_t point = 0; point < survey.points.size(); point += stride) {
+      const Eigen::Vector3d to_point = survey.points[point].x_in_enu - eye;
+      double& value = highest[bin_of(to_point)];
+      value = std::max(value, to_point.z() / std::max(1e-9, to_point.norm()));
+    }
+    for (const Tile& tile : TrainingTiles(survey, {photo})) {
+      if (!Of(tile).Sky()) continue;
+      Eigen::Vector3d origin, direction;
+      source.RayThrough(photo, source.TileCentre(tile), &origin, &direction);
+      ++sky[static_cast<size_t>(i)];
+      if (highest[bin_of(direction)] > direction.z() + kAboveHorizon) ++below[static_cast<size_t>(i)];
+    }
+  });
+  return std::reduce(below.begin(), below.end()) > kIndoors * std::reduce(sky.begin(), sky.end());
+}
+
+// How far it is to the nearest tile that shows something else: one more than for the neighbour that is nearest to it.
+void PointRanges::FindOpenSky(int photo) {
+  Range* ranges = ranges_.data() + first_[static_cast<size_t>(photo)];
   for (int reach = 1; reach < std::min(kTileRows, kTileColumns); ++reach) {
     bool any = false;
     for (int row = 0; row < kTileRows; ++row) {

@@ -45,6 +45,9 @@ class PointRanges {
   enum class Points : uint8_t { kNone, kClose, kInside };
   std::vector<Points> FindRanges(const survey::Survey& survey, const RaySource& source, int photo, const std::vector<uint32_t>& observed);
   void FindSky(const RaySource& source, int photo, const std::vector<Points>& points);
+  // Whether what looks like sky are walls and ceilings, because in many of its directions there are points above it.
+  bool IsIndoors(const survey::Survey& survey, const RaySource& source, const std::vector<int>& photos, base::ThreadPool& threads) const;
+  void FindOpenSky(int photo);
 
   std::vector<int32_t> first_;  // per photo of the survey: of its tiles in ranges_; -1: none
   std::vector<Range> ranges_;   // [row][column] of each photo

@@ -25,7 +25,7 @@ class PointRangesTest : public ::testing::Test {
   using MakePhoto = survey::Photo(const Eigen::Vector3d& eye, const std::string& name);
 
   // Photos at x = 0 and x = 16, 2 m above the ground: each shows 40 x 30 m of the plane of the wall.
-  void Photograph(std::array<uint8_t, 3> above, MakePhoto make = LevelPhoto) {
+  void Photograph(std::array<uint8_t, 3> above, MakePhoto make = LevelPhoto, bool ceiling = false) {
     camera::Camera camera;
     camera.width = kLevelPhotoWidth;
     camera.height = kLevelPhotoHeight;
@@ -57,6 +57,12 @@ class PointRangesTest : public ::testing::Test {
         survey_.points.push_back(point);
         survey_.tracks.Add(seen_by);
       }
+    }
+    for (double x = -20.0; ceiling && x < 36.0; x += 0.5) {
+      survey::SparsePoint point;
+      point.x_in_enu = {x, 15.0, 30.0};  // above what the photos show
+      survey_.points.push_back(point);
+      survey_.tracks.Add({0, 1});
     }
     pixels_ = image::PixelCache::Open(folder_ / "pixels.bin", sources, 0, threads_);
     source_ = std::make_unique<RaySource>(survey_, pixels_, response_);
@@ -109,6 +115,8 @@ TEST_F(PointRangesTest, SkyIsBrightAndNotReddishAboveAllPoints) {
   EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, -12.0)).Sky()) << "below the horizon";
   Photograph(kLamplight);
   EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 16.5)).Sky()) << "a ceiling";
+  Photograph(kBlue, LevelPhoto, true);
+  EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 16.5)).Sky()) << "there are points above it, so it is a wall";
 }
 
 TEST_F(PointRangesTest, NothingIsBeforeTheSky) {

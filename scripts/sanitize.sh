@@ -28,20 +28,26 @@ for preset in "${presets[@]}"; do
     rm -f "$passed"
   fi
   [[ -f $passed ]] || { touch "$passed" "$passed.begun"; }
-  mapfile -t names < <(ctest --test-dir "build/$preset" -N "${selection[@]}" | sed -n 's/^ *Test *#[0-9]*: //p')
-  failed=()
-  for name in "${names[@]}"; do
-    grep -Fqx "$name" "$passed" && continue
-    if ctest --test-dir "build/$preset" --output-on-failure --timeout 3600 -R "^$name\$" >"build/$preset/last_test.log" 2>&1; then
-      echo "$name" >>"$passed"
-      echo "$preset: $(wc -l <"$passed") of ${#names[@]} passed: $name"
-    else
-      failed+=("$name")
-      cp "build/$preset/last_test.log" "build/$preset/failed_$name.log"
-      echo "$preset: FAILED: $name, see build/$preset/failed_$name.log"
-    fi
+  mapfile -t tests < <(ctest --test-dir "build/$preset" -N "${selection[@]}" | sed -n 's/^ *Test *#[0-9]*: //p')
+  left=()
+  for test in "${tests[@]}"; do
+    grep -Fqx "$test" "$passed" || left+=("$test")
   done
-  echo "$preset: ${#names[@]} tests, ${#failed[@]} failed: ${failed[*]}"
+  failed=()
+  if (( ${#left[@]} > 0 )); then
+    # The list grows while ctest prints, so that a stop loses the running tests only.
+    ctest --test-dir "build/$preset" --output-on-failure --timeout 3600 --parallel "${SKYQUILT_TEST_JOBS:-$(nproc)}" \
+      -R "^($(IFS='|'; echo "${left[*]}"))\$" 2>&1 | tee "build/$preset/tests.log" |
+      sed -nu 's/^ *[0-9]*\/[0-9]* *Test *#[0-9]*: *\([^ ]*\) \.* *Passed.*/\1/p' |
+      while read -r name; do
+        echo "$name" >>"$passed"
+        echo "$preset: $(wc -l <"$passed") of ${#tests[@]} passed: $name"
+      done || true
+    for test in "${left[@]}"; do
+      grep -Fqx "$test" "$passed" || failed+=("$test")
+    done
+  fi
+  echo "$preset: ${#tests[@]} tests, ${#failed[@]} failed: ${failed[*]}$( (( ${#failed[@]} == 0 )) || echo "; see build/$preset/tests.log")"
   (( ${#failed[@]} == 0 )) || status=1
 done
 exit "$status"

@@ -154,7 +154,8 @@ TEST_F(Conventions, OpfWithHeightsAboveAGeoid) {
   ASSERT_NE(frame, nullptr);
   nlohmann::json file = base::ParseJson(*frame);
   const auto expect = [&](const char* definition, std::optional<double> constant_m, const auto& added_m) {
-    file["crs"] = {{"definition", definition}};
+    file["crs"] = nlohmann::json::object();  // clang 14 forgets to destroy nested braces in a generic lambda
+    file["crs"]["definition"] = definition;
     if (constant_m) file["crs"]["geoid_height"] = *constant_m;
     *frame = base::JsonText(file);
     ExpectPlace(

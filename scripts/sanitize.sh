@@ -24,7 +24,7 @@ for preset in "${presets[@]}"; do
   cmake --build "build/$preset"
   passed=build/$preset/passed_tests.txt
   # Programs built after the list was begun may behave differently.
-  if [[ -f $passed ]] && [[ -n $(find "build/$preset" -newer "$passed.begun" -type f -perm -u+x -not -path '*/Testing/*' -print -quit) ]]; then
+  if [[ -f $passed ]] && [[ -n $(find "build/$preset" -newer "$passed.begun" -type f -perm -u+x -not -path '*/Testing/*' -not -path '*/CMakeFiles/*' -print -quit) ]]; then
     rm -f "$passed"
   fi
   [[ -f $passed ]] || { touch "$passed" "$passed.begun"; }

@@ -29,6 +29,9 @@ constexpr float kSkyStep = 0.12F, kSameSkyStep = 0.05F;
 constexpr double kIndoors = 0.25;
 constexpr size_t kDirections = 180;  // all round
 constexpr size_t kMostPointsAbove = 20'000;
+// Nothing is nearer to a camera, in any direction, than this share of the distance of the nearest point but a few, which may be wrong.
+constexpr double kFreeBall = 0.8;
+constexpr size_t kWrongPoints = 4;
 
 size_t IndexOf(int row, int column) {
   return static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column);
@@ -64,6 +67,7 @@ PointRanges::PointRanges(const survey::Survey& survey, const RaySource& source, 
     const int photo = training[static_cast<size_t>(i)];
     FindSky(source, photo, FindRanges(survey, source, photo, observed[static_cast<size_t>(photo)]));
   });
+  FindFreeBalls(survey, training, threads);
   if (IsIndoors(survey, source, training, threads)) {
     for (Range& range : ranges_) range.open_sky = 0;
   } else {
@@ -216,6 +220,23 @@ void PointRanges::FindOpenSky(int photo) {
     }
     if (!any) break;
   }
+}
+
+void PointRanges::FindFreeBalls(const survey::Survey& survey, const std::vector<int>& photos, base::ThreadPool& threads) {
+  const size_t stride = survey.points.size() / kMostPointsAbove + 1;
+  if (survey.points.size() / stride <= kWrongPoints) return;
+  free_balls_.resize(photos.size());
+  threads.ParallelFor(static_cast<int64_t>(photos.size()), [&](int64_t i, int) {
+    const Eigen::Vector3d eye = cam_from_enu_[static_cast<size_t>(photos[static_cast<size_t>(i)])].OriginInSource();
+    std::vector<double> distances;
+    for (size_t point = 0; point < survey.points.size(); point += stride) distances.push_back((survey.points[point].x_in_enu - eye).norm());
+    std::nth_element(distances.begin(), distances.begin() + kWrongPoints, distances.end());
+    free_balls_[static_cast<size_t>(i)] = {eye, kFreeBall * distances[kWrongPoints]};
+  });
+}
+
+bool PointRanges::InFreeSpace(const Eigen::Vector3d& x_in_enu) const {
+  return std::ranges::any_of(free_balls_, [&](const FreeBall& ball) { return (x_in_enu - ball.centre_enu).norm() < ball.radius_m; });
 }
 
 const PointRanges::Range& PointRanges::Of(const Tile& tile) const {

@@ -40,6 +40,10 @@ class PointRanges {
   // photos that were not given.
   bool MayShow(int photo, const Eigen::Vector3d& x_in_enu, double radius_m) const;
 
+  // Whether a place is nearer to the camera of a training photo than 0.8 of the distance of the nearest points, in whatever direction: there the
+  // camera was carried or flown.
+  bool InFreeSpace(const Eigen::Vector3d& x_in_enu) const;
+
  private:
   // Whether a tile has points in it, or around it.
   enum class Points : uint8_t { kNone, kClose, kInside };
@@ -48,9 +52,15 @@ class PointRanges {
   // Whether what looks like sky are walls and ceilings, because in many of its directions there are points above it.
   bool IsIndoors(const survey::Survey& survey, const RaySource& source, const std::vector<int>& photos, base::ThreadPool& threads) const;
   void FindOpenSky(int photo);
+  void FindFreeBalls(const survey::Survey& survey, const std::vector<int>& photos, base::ThreadPool& threads);
 
-  std::vector<int32_t> first_;  // per photo of the survey: of its tiles in ranges_; -1: none
-  std::vector<Range> ranges_;   // [row][column] of each photo
+  struct FreeBall {
+    Eigen::Vector3d centre_enu;
+    double radius_m = 0.0;
+  };
+  std::vector<FreeBall> free_balls_;  // of the training photos
+  std::vector<int32_t> first_;        // per photo of the survey: of its tiles in ranges_; -1: none
+  std::vector<Range> ranges_;         // [row][column] of each photo
   std::vector<const camera::Camera*> cameras_;
   std::vector<geo::Rigid3d> cam_from_enu_;
 };

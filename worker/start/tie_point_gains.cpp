@@ -7,6 +7,7 @@
 
 #include "core/image/srgb.h"
 #include "core/linear/linear.h"
+#include "core/survey/view_kind.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -58,6 +59,8 @@ bool LightAround(const image::PixelCache& pixels, size_t photo, const Eigen::Vec
 std::vector<Sighting> FindSightings(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                                     const brightness::Response& response, base::ThreadPool& threads) {
   const size_t stride = std::max<size_t>(1, survey.points.size() / kMostPoints);
+  // From above, a photo sees nearly all points in its frame. Looking level, it sees many walls from behind: there only what it observed counts.
+  const bool observed_only = !survey.tracks.Empty() && survey::LooksLevel(survey);
   std::vector<std::vector<Sighting>> per_photo(survey.photos.size());
   threads.ParallelFor(static_cast<int64_t>(survey.photos.size()), [&](int64_t task, int) {
     const auto photo = static_cast<size_t>(task);
@@ -65,6 +68,7 @@ std::vector<Sighting> FindSightings(const survey::Survey& survey, const image::P
     if (p.is_test) return;
     const camera::Camera& camera = source.CameraOf(static_cast<int>(photo));
     for (size_t i = 0; i < survey.points.size(); i += stride) {
+      if (observed_only && std::ranges::find(survey.tracks.PhotosOf(i), static_cast<int32_t>(photo)) == survey.tracks.PhotosOf(i).end()) continue;
       const auto position = camera.ImgFromCam(p.cam_from_enu * survey.points[i].x_in_enu);
       std::array<double, 3> light{};
       if (!position || !(position->x() >= 0.0 && position->y() >= 0.0 && position->x() < camera.width && position->y() < camera.height)) continue;

@@ -2,7 +2,7 @@
 // that hardly overlap. The pixels at each point are read from every training photo that shows it, and
 //   log recorded light = log light of the point + log gain of the photo + log vignetting of its camera at the pixel
 // is solved for all unknowns by robust weighted least squares (Brown and Lowe 2007, section 6, in the logarithm); robust, because points are hidden
-// in some photos.
+// in some photos. Photos that look level have many points behind walls: of these only the points that a photo observed are read.
 #pragma once
 
 #include "core/brightness/response.h"

@@ -119,6 +119,16 @@ TEST_F(PointRangesTest, SkyIsBrightAndNotReddishAboveAllPoints) {
   EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 16.5)).Sky()) << "there are points above it, so it is a wall";
 }
 
+TEST_F(PointRangesTest, NothingIsNextToACamera) {
+  Photograph(kBlue);
+  for (const Eigen::Vector3d& free : {Eigen::Vector3d(0.0, 15.0, 2.0), {0.0, 0.0, 2.0}, {16.0, 0.0, 12.0}, {0.0, -15.0, 2.0}}) {
+    EXPECT_TRUE(ranges_.InFreeSpace(free)) << free.transpose();
+  }
+  for (const Eigen::Vector3d& not_known : {Eigen::Vector3d(0.0, 17.0, 2.0), {8.0, 17.0, 2.0}, {0.0, -17.0, 2.0}, {40.0, 0.0, 2.0}}) {
+    EXPECT_FALSE(ranges_.InFreeSpace(not_known)) << not_known.transpose();
+  }
+}
+
 TEST_F(PointRangesTest, NothingIsBeforeTheSky) {
   Photograph(kBlue);
   const Eigen::Vector3d before_sky(0.0, 12.0, 2.0 + 12.0 * 14.5 / kWall);

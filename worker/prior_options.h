@@ -32,8 +32,9 @@ struct PriorOptions {
   bool Segments() const { return planar > 0.0 || upright > 0.0 || normals > 0.0 || orientation > 0.0; }
   // Whether planes of sparse points are needed.
   bool Planes() const { return planes > 0.0 || normals > 0.0; }
-  // Share of the full weights, 0..1; of points. progress: of the budget, 0..1.
-  bool Points() const { return points > 0.0 || free_space > 0.0; }  // whether rays are drawn towards sparse points
+  // Whether rays are drawn towards sparse points.
+  bool Points() const { return points > 0.0 || free_space > 0.0; }
+  // Share of the full weights, 0..1; of points and free_space. progress: of the budget, 0..1.
   double Strength(double progress) const;
   double PointStrength(double progress) const;
 

@@ -27,6 +27,7 @@ constexpr float kSkyBrightness = 0.45F, kSkyBlue = 1.0F;
 constexpr float kSkyStep = 0.12F, kSameSkyStep = 0.05F;
 // Where such a share of the sky has points above it, it is the walls of a room.
 constexpr double kIndoors = 0.25;
+constexpr double kAboveSky = 0.03;   // such points are higher by at least this, in the sine of the elevation
 constexpr size_t kDirections = 180;  // all round
 constexpr size_t kMostPointsAbove = 20'000;
 // Nothing is nearer to a camera, in any direction, than this share of the distance of the nearest point but a few, which may be wrong.
@@ -194,7 +195,7 @@ bool PointRanges::IsIndoors(const survey::Survey& survey, const RaySource& sourc
       Eigen::Vector3d origin, direction;
       source.RayThrough(photo, source.TileCentre(tile), &origin, &direction);
       ++sky[static_cast<size_t>(i)];
-      if (highest[bin_of(direction)] > direction.z() + kAboveHorizon) ++below[static_cast<size_t>(i)];
+      if (highest[bin_of(direction)] > direction.z() + kAboveSky) ++below[static_cast<size_t>(i)];
     }
   });
   return std::reduce(below.begin(), below.end()) > kIndoors * std::reduce(sky.begin(), sky.end());

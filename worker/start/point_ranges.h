@@ -36,8 +36,8 @@ class PointRanges {
   const Range& Of(const Tile& tile) const;
   // Whether every pixel of the tile shows sky, as those around it do, too. False where these ranges are empty.
   bool OpenSky(const Tile& tile) const { return !Empty() && Of(tile).open_sky > 1; }
-  // Whether the photo's surfaces may be at a ball around a place that its image shows: neither nearer nor farther than the range there. True for
-  // photos that were not given.
+  // Whether the photo's surfaces may be at a ball around a place that its image shows: neither nearer nor farther than the range there, nor
+  // before the sky. True for photos that were not given.
   bool MayShow(int photo, const Eigen::Vector3d& x_in_enu, double radius_m) const;
 
   // Whether a place is nearer to the camera of a training photo than 0.8 of the distance of the nearest points, in whatever direction: there the

@@ -29,8 +29,8 @@ void StartEverywhere(render::TrainedField& target);
 void StartFromPoints(const survey::Survey& survey, render::TrainedField& target);
 // The same where photos look level: keeps only the cells that rays of the given tiles meet inside their ranges, and none along rays that show sky.
 void StartFromRanges(const RaySource& source, const PointRanges& ranges, const std::vector<Tile>& tiles, render::TrainedField& target);
-// Keeps only cells near the surfaces that the context shows in the given tiles (surface_band.h), and cells with sparse points. Other cells are free
-// until surfaces grow into them. Does nothing when the context has no bands.
+// Keeps only cells near the surfaces that the context shows in the given tiles (surface_interval.h), and cells with sparse points; none
+// for tiles that show only sky. Other cells are free until surfaces grow into them. Does nothing when the context has no bands.
 void StartFromSurfaces(const RaySource& source, const PointRanges& ranges, const survey::Survey& survey, const std::vector<Tile>& tiles,
                        const LoadedContext& context, render::TrainedField& target);
 

@@ -175,16 +175,16 @@ void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, cons
   base::WriteFileAtomically(file, base::JsonText(bounds, 1) + "\n");
 }
 
-void WriteMapPreviews(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& orthophoto,
-                      const std::filesystem::path& dsm, const std::filesystem::path& folder, int preview_width) {
-  if (!orthophoto.empty()) WriteOrthophotoPicture(info, grid, orthophoto, folder / "orthophoto.png", preview_width, false);
+void WriteMapPreviews(const scene::SceneInfo& info, const gis::MapGrid& ortho_grid, const std::filesystem::path& orthophoto,
+                      const gis::MapGrid& dsm_grid, const std::filesystem::path& dsm, const std::filesystem::path& folder, int preview_width) {
+  if (!orthophoto.empty()) WriteOrthophotoPicture(info, ortho_grid, orthophoto, folder / "orthophoto.png", preview_width, false);
   if (!dsm.empty()) {
-    const auto [width, height] = PictureSize(info, grid, preview_width);
-    const CellLookup lookup(info, grid, width, height);
+    const auto [width, height] = PictureSize(info, dsm_grid, preview_width);
+    const CellLookup lookup(info, dsm_grid, width, height);
     const double pixel_m = (info.max_enu.x() - info.min_enu.x()) / width;
     image::SavePng(ShadedRelief(HeightPreview(gis::ReadReduced(dsm, preview_width), lookup, width, height), pixel_m), folder / "dsm.png");
   }
-  WriteMapBounds(info, grid, folder / "orthophoto.json");
+  WriteMapBounds(info, ortho_grid, folder / "orthophoto.json");
 }
 
 }  // namespace skyquilt::products

@@ -1,7 +1,10 @@
 #include "products/map_products.h"
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
 
 #include "core/base/cancel.h"
 #include "core/base/file.h"
@@ -37,68 +40,169 @@ gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const scene::MapHeights& 
   return spec;
 }
 
-}  // namespace
-
-MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options,
-                            const std::filesystem::path& folder) {
-  const auto begin = std::chrono::steady_clock::now();
-  MapProducts products;
-  products.grid = PlanMapGrid(info, options);
-  if (!options.ortho && !options.dsm) return products;
-  const std::optional<gis::Boundary> boundary = BoundaryOf(products.grid, options);
-  if (boundary) products.grid = CropTo(products.grid, *boundary);
-  base::RequireWritableFolder(folder);
-  const gis::MapGrid& grid = products.grid;
-  if (!grid.georeferenced)
-    base::LogWarning(
-        "the survey has no geo-reference, so orthophoto and surface model are in local coordinates without CRS; use photos with GPS tags");
-  const scene::MapHeights heights(info, options.dsm ? geo::VerticalNamed(options.vertical) : geo::Vertical::kAsTagged);
-  if (!heights.Caution().empty()) base::LogWarning("{}", heights.Caution());
-  HeightShift shift(heights, grid);
-  std::optional<gis::GeoTiffWriter> ortho;
-  std::optional<gis::GeoTiffWriter> dsm;
-  if (options.ortho) ortho.emplace(products.orthophoto = folder / "orthophoto.tif", OrthophotoSpec(info, grid, "Orthophoto"));
-  if (options.dsm) dsm.emplace(products.dsm = folder / "dsm.tif", DsmSpec(info, heights, grid));
-
+// One ray per cell of the products' grid, whose number they get. write_rows(first_row, n_rows, cells) gets the rows in order and may change them.
+template <typename WriteRows>
+void RenderCells(const scene::SceneInfo& info, const RayCaster& caster, const std::optional<gis::Boundary>& boundary, double min_opacity,
+                 const char* what, MapProducts* products, const WriteRows& write_rows) {
+  const gis::MapGrid& grid = products->grid;
   const MapRayGenerator generator(info, grid);
-  base::Progress progress(options.ortho ? "orthophoto" : "surface model", static_cast<double>(grid.width) * grid.height, "cells");
+  base::Progress progress(what, static_cast<double>(grid.width) * grid.height, "cells");
   PaintedCells band;  // consecutive rows of both maps, written together
   MapRays row_rays;
-  CellPainter painter(caster, options.min_opacity);
+  CellPainter painter(caster, min_opacity);
   for (int first_row = 0; first_row < grid.height; first_row += gis::GeoTiffWriter::kTile) {
     base::ThrowIfCancelled();
     const int n_rows = std::min(gis::GeoTiffWriter::kTile, grid.height - first_row);
-    const size_t cells = static_cast<size_t>(n_rows) * static_cast<size_t>(grid.width);
+    const size_t cells = grid.Index(0, n_rows);
     band.rgba.assign(4 * cells, 0);
     band.place.assign(cells, kNoHeight);
     for (int row = 0; row < n_rows; ++row) {
       generator.MakeRow(first_row + row, &row_rays);
       for (size_t i = 0; i < row_rays.rays.size(); ++i) {
         if (boundary && !boundary->Contains(grid.CellCentre(row_rays.column[i], first_row + row))) continue;
-        ++products.rays;
+        ++products->rays;
         painter.Add(row_rays.rays[i], grid.Index(row_rays.column[i], row), row_rays.start_height_m[i], &band);
       }
       progress.Update(static_cast<double>(first_row + row) * grid.width);
     }
     painter.Finish(&band);
-    if (ortho) ortho->WriteRows(first_row, n_rows, std::span<const uint8_t>(band.rgba));
-    shift.AddTo(first_row, kNoHeight, band.place);
-    if (dsm) dsm->WriteRows(first_row, n_rows, std::span<const float>(band.place));
+    write_rows(first_row, n_rows, band);
   }
   progress.Update(static_cast<double>(grid.width) * grid.height);
+  progress.Finish();
+  products->filled = products->rays > 0 ? static_cast<double>(painter.painted()) / static_cast<double>(products->rays) : 0.0;
+}
+
+// Heights of rows as the surface model has them.
+class DsmWriter {
+ public:
+  DsmWriter(const scene::SceneInfo& info, const gis::MapGrid& grid, const ProductOptions& options, const std::filesystem::path& file)
+      : heights_(info, geo::VerticalNamed(options.vertical)), shift_(heights_, grid), writer_(file, DsmSpec(info, heights_, grid)) {
+    if (!heights_.Caution().empty()) base::LogWarning("{}", heights_.Caution());
+  }
+  // Consecutive rows from the first on; kNoHeight without data. Changes them.
+  void WriteRows(int first_row, int n_rows, std::vector<float>* height_m) {
+    shift_.AddTo(first_row, kNoHeight, *height_m);
+    writer_.WriteRows(first_row, n_rows, std::span<const float>(*height_m));
+  }
+  void Close() { writer_.Close(); }
+
+ private:
+  scene::MapHeights heights_;
+  HeightShift shift_;
+  gis::GeoTiffWriter writer_;
+};
+
+// Both maps as the scene shows them, some rows in memory at a time.
+void RenderToFiles(const scene::SceneInfo& info, const RayCaster& caster, const std::optional<gis::Boundary>& boundary, const ProductOptions& options,
+                   MapProducts* products) {
+  std::optional<gis::GeoTiffWriter> ortho;
+  std::optional<DsmWriter> dsm;
+  if (options.ortho) ortho.emplace(products->orthophoto, OrthophotoSpec(info, products->grid, "Orthophoto"));
+  if (options.dsm) dsm.emplace(info, products->grid, options, products->dsm);
+  RenderCells(info, caster, boundary, options.min_opacity, options.ortho ? "orthophoto" : "surface model", products,
+              [&](int first_row, int n_rows, PaintedCells& band) {
+                if (ortho) ortho->WriteRows(first_row, n_rows, std::span<const uint8_t>(band.rgba));
+                if (dsm) dsm->WriteRows(first_row, n_rows, &band.place);
+              });
   if (ortho) ortho->Close();
   if (dsm) dsm->Close();
-  progress.Finish();
-  products.filled = products.rays > 0 ? static_cast<double>(painter.painted()) / static_cast<double>(products.rays) : 0.0;
-  WriteMapPreviews(info, grid, products.orthophoto, products.dsm, folder, kPreviewWidth);
+}
+
+void WriteFieldOrthophoto(const scene::SceneInfo& info, const FieldMap& field, const std::filesystem::path& file) {
+  gis::GeoTiffWriter ortho(file, OrthophotoSpec(info, field.grid, "Orthophoto"));
+  for (int first_row = 0; first_row < field.grid.height; first_row += gis::GeoTiffWriter::kTile) {
+    const int n_rows = std::min(gis::GeoTiffWriter::kTile, field.grid.height - first_row);
+    ortho.WriteRows(first_row, n_rows, std::span(field.rgba).subspan(4 * field.grid.Index(0, first_row), 4 * field.grid.Index(0, n_rows)));
+  }
+  ortho.Close();
+}
+
+// Cells outside the cutline have no data.
+void WriteFieldDsm(const scene::SceneInfo& info, const FieldMap& field, const gis::Boundary* cutline, const ProductOptions& options,
+                   const std::filesystem::path& file) {
+  DsmWriter dsm(info, field.grid, options, file);
+  const std::vector<uint8_t> inside = cutline != nullptr ? cutline->Mask(field.grid) : std::vector<uint8_t>();
+  std::vector<float> rows;
+  for (int first_row = 0; first_row < field.grid.height; first_row += gis::GeoTiffWriter::kTile) {
+    const int n_rows = std::min(gis::GeoTiffWriter::kTile, field.grid.height - first_row);
+    const size_t begin = field.grid.Index(0, first_row);
+    rows.assign(field.grid.Index(0, n_rows), kNoHeight);
+    for (size_t i = 0; i < rows.size(); ++i) {
+      const float height_m = field.height_m[begin + i];
+      if (std::isfinite(height_m) && (inside.empty() || inside[begin + i] != 0)) rows[i] = height_m;
+    }
+    dsm.WriteRows(first_row, n_rows, &rows);
+  }
+  dsm.Close();
+}
+
+// The scene as it is seen straight down is the surface that the photos are laid on, so it is kept in memory.
+void PaintFromPhotos(const scene::SceneInfo& info, const RayCaster& caster, const std::optional<gis::Boundary>& boundary,
+                     const ProductOptions& options, const MapPhotos& photos, const std::filesystem::path& folder, MapProducts* products) {
+  const gis::MapGrid& grid = products->grid;
+  FieldMap field{grid, std::vector<uint8_t>(4 * grid.size()), std::vector<float>(grid.size())};
+  RenderCells(info, caster, boundary, options.min_opacity, "surface model", products, [&](int first_row, int /*n_rows*/, PaintedCells& band) {
+    const auto begin = static_cast<std::ptrdiff_t>(grid.Index(0, first_row));
+    std::copy(band.rgba.begin(), band.rgba.end(), field.rgba.begin() + 4 * begin);
+    std::transform(band.place.begin(), band.place.end(), field.height_m.begin() + begin,
+                   [](float height_m) { return height_m == kNoHeight ? std::numeric_limits<float>::quiet_NaN() : height_m; });
+  });
+  products->painted = WritePhotoOrthophoto(info, photos.survey, field, options, boundary, photos.memory, folder, photos.threads);
+  if (!products->painted) WriteFieldOrthophoto(info, field, products->orthophoto);
+  if (options.dsm) WriteFieldDsm(info, field, products->painted ? &products->painted->cutline : nullptr, options, products->dsm);
+}
+
+}  // namespace
+
+size_t PictureMemory(double limit_bytes) {
+  return static_cast<size_t>(std::clamp(0.25 * limit_bytes, 64e6, 1.5e9));
+}
+
+void LogMaps(const MapProducts& made, const std::filesystem::path& folder) {
+  if (!made.painted) {
+    base::LogInfo("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", made.grid.width, made.grid.height, made.grid.resolution_m,
+                  100.0 * made.filled, folder.string());
+    return;
+  }
+  const double field_share = static_cast<double>(made.painted->field_cells) / static_cast<double>(std::max<int64_t>(made.painted->cells, 1));
+  base::LogInfo("orthophoto of {} x {} cells of {:.3g} m from {} photos, {:.2g} % of it from the trained scene where no photo sees the surface: {}",
+                made.grid.width, made.grid.height, made.grid.resolution_m, made.painted->photos, 100.0 * field_share, made.orthophoto.string());
+}
+
+MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options,
+                            const std::filesystem::path& folder, const MapPhotos* photos) {
+  MapProducts products;
+  products.grid = PlanMapGrid(info, options);
+  if (!options.ortho && !options.dsm) return products;
+  const std::optional<gis::Boundary> boundary = BoundaryOf(products.grid, options);
+  if (boundary) products.grid = CropTo(products.grid, *boundary);
+  base::RequireWritableFolder(folder);
+  if (!products.grid.georeferenced)
+    base::LogWarning(
+        "the survey has no geo-reference, so orthophoto and surface model are in local coordinates without CRS; use photos with GPS tags");
+  if (options.ortho) products.orthophoto = folder / "orthophoto.tif";
+  if (options.dsm) products.dsm = folder / "dsm.tif";
+  const gis::MapGrid dsm_grid = products.grid;
+  if (options.ortho && photos != nullptr && options.ortho_source == "photos") {
+    PaintFromPhotos(info, caster, boundary, options, *photos, folder, &products);
+  } else {
+    RenderToFiles(info, caster, boundary, options, &products);
+  }
+  if (products.painted) {
+    products.grid = products.painted->grid;
+  } else if (options.ortho) {
+    // Files that only an orthophoto from photos has, of an earlier run.
+    for (const char* name : {"ortho_sources.tif", "ortho_sources.json", "cutline.gpkg"}) std::filesystem::remove(folder / name);
+  }
+  WriteMapPreviews(info, products.grid, products.orthophoto, dsm_grid, products.dsm, folder, kPreviewWidth);
   if (options.ortho) RemovePreviews(folder);
-  products.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return products;
 }
 
-MapProducts MakeMapProducts(const scene::Scene& scene, const ProductOptions& options, const std::filesystem::path& folder,
-                            base::ThreadPool& threads) {
-  return MakeMapProducts(scene.info(), CasterOf(scene, AppearanceOf(options.exposure, scene.info()), threads), options, folder);
+MapProducts MakeMapProducts(const scene::Scene& scene, const ProductOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads,
+                            const MapPhotos* photos) {
+  return MakeMapProducts(scene.info(), CasterOf(scene, AppearanceOf(options.exposure, scene.info()), threads), options, folder, photos);
 }
 
 }  // namespace skyquilt::products

@@ -1,4 +1,5 @@
-// Makes the maps of a scene, orthophoto and digital surface model, by rendering one vertical ray per map cell. Files:
+// Makes the maps of a scene, orthophoto and digital surface model. The scene is rendered with one vertical ray per map cell; with the photos at hand
+// the orthophoto is painted from them at their own resolution (photo_map/photo_orthophoto.h, which lists more files). Files:
 //   orthophoto.tif  red, green, blue, alpha bytes (display values); alpha 0 where the scene has no surface
 //   dsm.tif         float32 height of the surface in metres, above what products.vertical says and its CRS names (core/scene/map_heights.h), local z
 //                   without geo-reference; no data: -9999
@@ -12,26 +13,40 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "products/map_rays.h"
+#include "products/photo_map/photo_orthophoto.h"
 #include "products/product_options.h"
 #include "products/ray_caster.h"
 
 namespace skyquilt::products {
 
 struct MapProducts {
-  gis::MapGrid grid;
+  gis::MapGrid grid;                 // of the orthophoto when it is made, otherwise of the surface model
   std::filesystem::path orthophoto;  // empty when not made; dsm likewise
   std::filesystem::path dsm;
-  double filled = 0.0;  // share of the cells inside the scene's box that have data, 0..1
+  double filled = 0.0;  // share of the rendered cells inside the scene's box that have data, 0..1
   int64_t rays = 0;
-  double seconds = 0.0;
+  std::optional<PhotoOrthophoto> painted;  // nothing when the orthophoto was rendered
 };
 
-// Writes into `folder`, which is created. Deterministic. For a scene without geo-reference the files have no CRS, with a warning. Files are complete
+// What an orthophoto is painted from.
+struct MapPhotos {
+  const survey::Survey& survey;
+  size_t memory;  // bytes that photos in memory may take
+  base::ThreadPool& threads;
+};
+// Of the memory that the program may use: a quarter, and no more than photos of neighbouring tiles need.
+size_t PictureMemory(double limit_bytes);
+
+// Writes into `folder`, which is created. photos: null when there are none; they are used if options.ortho_source says so. Deterministic. For a scene without geo-reference the files have no CRS, with a warning. Files are complete
 // or absent. Throws base::UsageError (see PlanMapGrid), base::InputError when a file cannot be written, and base::Interrupted.
 MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options,
-                            const std::filesystem::path& folder);
-MapProducts MakeMapProducts(const scene::Scene& scene, const ProductOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads);
+                            const std::filesystem::path& folder, const MapPhotos* photos = nullptr);
+MapProducts MakeMapProducts(const scene::Scene& scene, const ProductOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads,
+                            const MapPhotos* photos = nullptr);
+// One line about the size of the maps, and what the orthophoto was made from.
+void LogMaps(const MapProducts& made, const std::filesystem::path& folder);
 
 }  // namespace skyquilt::products

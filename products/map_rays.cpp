@@ -109,6 +109,13 @@ Eigen::Vector2d MapProjection::EastingNorthing(const Eigen::Vector3d& x_in_enu) 
   return geo::UtmFromGeodetic(frame_->GeodeticFromEnu(x_in_enu), grid_.zone);
 }
 
+Eigen::Vector3d MapProjection::MapFromEnu(const Eigen::Vector3d& x_in_enu) const {
+  if (!grid_.georeferenced) return x_in_enu;
+  const geo::Geodetic place = frame_->GeodeticFromEnu(x_in_enu);
+  const Eigen::Vector2d easting_northing = geo::UtmFromGeodetic(place, grid_.zone);
+  return {easting_northing.x(), easting_northing.y(), place.height_m};
+}
+
 MapRayGenerator::MapRayGenerator(const scene::SceneInfo& info, const gis::MapGrid& grid) : info_(info), grid_(grid), projection_(info, grid) {
   step_ = static_cast<int>(std::clamp(std::floor(kLatticeSpacing_m / grid.resolution_m), 1.0, double{kLatticeCells}));
   lattice_columns_ = (grid.width - 1) / step_ + 2;

@@ -33,6 +33,8 @@ class MapProjection {
   double start_height_m() const { return start_height_m_; }  // ellipsoidal, or local z without geo-reference
   VerticalLine VerticalLineAt(const Eigen::Vector2d& easting_northing) const;
   Eigen::Vector2d EastingNorthing(const Eigen::Vector3d& x_in_enu) const;
+  // The same and the height, ellipsoidal or local z.
+  Eigen::Vector3d MapFromEnu(const Eigen::Vector3d& x_in_enu) const;
 
  private:
   gis::MapGrid grid_;

@@ -13,16 +13,15 @@
 #include "core/base/text.h"
 #include "products/map_area.h"
 #include "products/map_rays.h"
-#include "products/photo_choice.h"
-#include "products/photo_mosaic.h"
+#include "products/photo_map/photo_choice.h"
+#include "products/photo_map/photo_map.h"
 #include "products/sparse_surface.h"
 
 namespace skyquilt::products {
 namespace {
 
-// Cells between the places at which the photos are compared and chosen.
-constexpr int kNodeStep = 8;
-constexpr int kChoiceStep = 4;  // nodes between the places for which few photos are chosen from many
+constexpr int kSurfaceStep = 4;    // cells of the map in one of the surface, along an axis
+constexpr int kChoicePlaces = 100;  // per side of the area, for which few photos are chosen from many
 constexpr size_t kNamedPhotos = 3;
 
 // What the photos show, in the form that maps are planned with.
@@ -57,109 +56,34 @@ bool FindFlownAt(const survey::Survey& survey, double ground_z, FlownAt* flown) 
   return true;
 }
 
-// Places on the surface, at the centres of the cells of a map.
-class SurfaceCells {
- public:
-  SurfaceCells(const scene::SceneInfo& info, const gis::MapGrid& grid, const scene::HeightMap& heights)
-      : rays_(info, grid), width_(grid.width), heights_(heights) {}
-
-  // One place per column; NaN outside the scene's box.
-  void MakeRow(int row, std::vector<Eigen::Vector3d>* places_enu) const {
-    MapRays row_rays;
-    rays_.MakeRow(row, &row_rays);
-    places_enu->assign(static_cast<size_t>(width_), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-    for (size_t i = 0; i < row_rays.rays.size(); ++i) {
-      const render::Ray& ray = row_rays.rays[i];
-      const double z = heights_.At(ray.origin_enu.x(), ray.origin_enu.y());
-      (*places_enu)[static_cast<size_t>(row_rays.column[i])] = ray.origin_enu + (z - ray.origin_enu.z()) / ray.direction_enu.z() * ray.direction_enu;
+// The surface on a grid with larger cells than the map, which heights between sparse points do not fill with detail anyhow.
+HeightGrid SurfaceOf(const gis::MapGrid& map, const MapProjection& projection, const scene::HeightMap& heights) {
+  gis::MapGrid grid = map;
+  grid.resolution_m *= kSurfaceStep;
+  grid.width = (map.width + kSurfaceStep - 1) / kSurfaceStep;
+  grid.height = (map.height + kSurfaceStep - 1) / kSurfaceStep;
+  std::vector<float> heights_m(grid.size());
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const MapProjection::VerticalLine line = projection.VerticalLineAt(grid.CellCentre(column, row));
+      const double s = (heights.At(line.start_enu.x(), line.start_enu.y()) - line.start_enu.z()) / line.down_enu.z();
+      heights_m[grid.Index(column, row)] = static_cast<float>(projection.start_height_m() - s);
     }
   }
-
- private:
-  MapRayGenerator rays_;
-  int width_;
-  const scene::HeightMap& heights_;
-};
-
-// The lattice of places at which photos are compared: every kNodeStep-th cell, and the last.
-struct Nodes {
-  int columns = 0, rows = 0;
-  std::vector<Eigen::Vector3d> places_enu;  // row-major
-  std::vector<BestViews> views;
-
-  size_t Index(int row, int column) const { return static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column); }
-};
-
-Nodes MakeNodes(const gis::MapGrid& grid, const SurfaceCells& cells, base::ThreadPool& threads) {
-  Nodes nodes;
-  nodes.columns = (grid.width - 1) / kNodeStep + 2;
-  nodes.rows = (grid.height - 1) / kNodeStep + 2;
-  nodes.places_enu.resize(nodes.Index(nodes.rows, 0));
-  threads.ParallelFor(nodes.rows, [&](int64_t task, int /*thread*/) {
-    const int row = static_cast<int>(task);
-    std::vector<Eigen::Vector3d> places;
-    cells.MakeRow(std::min(row * kNodeStep, grid.height - 1), &places);
-    for (int column = 0; column < nodes.columns; ++column) {
-      nodes.places_enu[nodes.Index(row, column)] = places[static_cast<size_t>(std::min(column * kNodeStep, grid.width - 1))];
-    }
-  });
-  return nodes;
+  return {grid, std::move(heights_m)};
 }
 
-std::vector<char> ChoosePhotosFor(const survey::Survey& survey, const Nodes& nodes, double height_m, base::ThreadPool& threads) {
+// Photos that look down on the ground and are read: an even choice of many.
+std::vector<char> ChoosePhotosFor(const survey::Survey& survey, const scene::HeightMap& heights, const Eigen::AlignedBox2d& area, double height_m,
+                                  base::ThreadPool& threads) {
   std::vector<Eigen::Vector3d> places;
-  for (int row = 0; row < nodes.rows; row += kChoiceStep) {
-    for (int column = 0; column < nodes.columns; column += kChoiceStep) places.push_back(nodes.places_enu[nodes.Index(row, column)]);
+  for (int row = 0; row < kChoicePlaces; ++row) {
+    for (int column = 0; column < kChoicePlaces; ++column) {
+      const Eigen::Vector2d at = area.min() + Eigen::Vector2d(column + 0.5, row + 0.5).cwiseProduct(area.sizes()) / kChoicePlaces;
+      places.emplace_back(at.x(), at.y(), heights.At(at.x(), at.y()));
+    }
   }
   return ChooseFewPhotos(survey, places, kMostPhotoPixels, height_m, threads);
-}
-
-// Photos that are among the best of some place.
-std::vector<char> PhotosInUse(const std::vector<BestViews>& views, size_t photos) {
-  std::vector<char> used(photos, 0);
-  for (const BestViews& best : views) {
-    for (const int32_t photo : best) {
-      if (photo >= 0) used[static_cast<size_t>(photo)] = 1;
-    }
-  }
-  return used;
-}
-
-// The photos that see the corners of a square between four nodes.
-std::vector<int32_t> PhotosAround(const Nodes& nodes, int row, int column) {
-  std::vector<int32_t> around;
-  for (const int r : {row, row + 1}) {
-    for (const int c : {column, column + 1}) {
-      for (const int32_t photo : nodes.views[nodes.Index(r, c)]) {
-        if (photo >= 0 && std::find(around.begin(), around.end(), photo) == around.end()) around.push_back(photo);
-      }
-    }
-  }
-  return around;
-}
-
-// inside: 0 for cells that are left out; empty: none is.
-PreviewMap Paint(const gis::MapGrid& grid, const SurfaceCells& cells, const Nodes& nodes, const MosaicPainter& painter,
-                 const std::vector<uint8_t>& inside, base::ThreadPool& threads) {
-  PreviewMap map{grid, std::vector<uint8_t>(4 * grid.size(), 0)};
-  threads.ParallelFor(nodes.rows - 1, [&](int64_t task, int /*thread*/) {
-    base::ThrowIfCancelled();
-    const int band = static_cast<int>(task);
-    std::vector<std::vector<int32_t>> around;
-    for (int column = 0; column + 1 < nodes.columns; ++column) around.push_back(PhotosAround(nodes, band, column));
-    std::vector<Eigen::Vector3d> places;
-    for (int row = band * kNodeStep; row < std::min((band + 1) * kNodeStep, grid.height); ++row) {
-      cells.MakeRow(row, &places);
-      for (int column = 0; column < grid.width; ++column) {
-        const Eigen::Vector3d& place = places[static_cast<size_t>(column)];
-        const size_t cell = grid.Index(column, row);
-        if (!place.allFinite() || (!inside.empty() && inside[cell] == 0)) continue;
-        const std::array<uint8_t, 4> color = painter.ColorAt(place, around[static_cast<size_t>(column / kNodeStep)]);
-        std::copy(color.begin(), color.end(), map.rgba.begin() + static_cast<std::ptrdiff_t>(4 * cell));
-      }
-    }
-  });
-  return map;
 }
 
 void WarnOfUnreadable(const std::vector<std::string>& failures, int chosen) {
@@ -192,24 +116,45 @@ PointPreview MakePointPreview(const survey::Survey& survey, const ProductOptions
   const std::optional<gis::Boundary> boundary = BoundaryOf(grid, options);
   if (boundary) grid = CropTo(grid, *boundary);
 
-  const SurfaceCells cells(info, grid, heights);
-  Nodes nodes = MakeNodes(grid, cells, threads);
-  std::vector<char> usable = ChoosePhotosFor(survey, nodes, flown.height_m, threads);
-  nodes.views = FindBestViews(survey, nodes.places_enu, usable, flown.height_m, threads);
-  usable = PhotosInUse(nodes.views, survey.photos.size());
+  const MapProjection projection(info, grid);
+  const HeightGrid surface = SurfaceOf(grid, projection, heights);
+  const std::vector<char> usable = ChoosePhotosFor(survey, heights, area, flown.height_m, threads);
+  PhotoMap painter({.survey = survey,
+                    .usable = usable,
+                    .grid = grid,
+                    .projection = projection,
+                    .surface = surface,
+                    .field_rgba = {},
+                    .ground_z = ground_z,
+                    .flown_height_m = flown.height_m},
+                   threads);
+  const std::vector<std::string>& failures = painter.failures();
   const auto chosen = static_cast<int>(std::count(usable.begin(), usable.end(), 1));
-  std::vector<std::string> failures;
-  std::vector<MosaicPhoto> photos = ReadMosaicPhotos(survey, usable, ground_z, grid.resolution_m, threads, &failures);
-  if (chosen == static_cast<int>(failures.size())) {
+  PreviewMap map{grid, {}};
+  map.rgba.reserve(4 * grid.size());
+  std::vector<char> shown(survey.photos.size(), 0);
+  PhotoMapRows rows;
+  for (int row = 0; row < grid.height; row += PhotoMap::kRows) {
+    painter.PaintRows(row, std::min(PhotoMap::kRows, grid.height - row), threads, &rows);
+    map.rgba.insert(map.rgba.end(), rows.rgba.begin(), rows.rgba.end());
+    for (const uint16_t source : rows.sources) {
+      if (source >= kFirstPhotoSource) shown[source - kFirstPhotoSource] = 1;
+    }
+  }
+  const auto n_shown = static_cast<int>(std::count(shown.begin(), shown.end(), 1));
+  if (n_shown == 0) {
     throw base::InputError(survey.photo_root, failures.empty() ? "no photo looks down on the ground" : "no photo can be read: " + failures.front(),
                            "Check that the photos are where they were when the survey was prepared");
   }
   WarnOfUnreadable(failures, chosen);
-  EqualiseBrightness(nodes.places_enu, nodes.views, &photos);
-  const std::vector<uint8_t> inside = boundary ? boundary->Mask(grid) : std::vector<uint8_t>();
-  const PreviewMap map = Paint(grid, cells, nodes, MosaicPainter(photos, flown.height_m), inside, threads);
+  if (boundary) {
+    const std::vector<uint8_t> inside = boundary->Mask(grid);
+    for (size_t cell = 0; cell < inside.size(); ++cell) {
+      if (inside[cell] == 0) std::fill_n(map.rgba.begin() + static_cast<std::ptrdiff_t>(4 * cell), 4, uint8_t{0});
+    }
+  }
   const std::filesystem::path picture = WritePreview(info, map, kFromSparsePoints, folder, kPreviewWidth);
-  return {picture, grid, map.Filled(), chosen - static_cast<int>(failures.size()), static_cast<int>(failures.size())};
+  return {picture, grid, map.Filled(), n_shown, static_cast<int>(failures.size())};
 }
 
 }  // namespace skyquilt::products

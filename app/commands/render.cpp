@@ -77,7 +77,8 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     throw base::UsageError(
         "--photo, --test, --plane auto and a video along the cameras need the survey: give the project folder, or a scene.h5 inside its project");
   }
-  if (target.project && (needs_survey || !flags.plane.empty())) survey = survey::LoadSurvey(target.project->SurveyFolder());
+  const bool from_photos = target.project && flags.ortho && options.ortho_source == "photos";
+  if (target.project && (needs_survey || from_photos || !flags.plane.empty())) survey = survey::LoadSurvey(target.project->SurveyFolder());
   if (!flags.photos.empty() || flags.test) {
     std::vector<products::View> views;
     if (flags.test) views = products::ViewsOfPhotos(*survey, {}, flags.width);
@@ -110,9 +111,9 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     products::ProductOptions asked = options;
     asked.ortho = flags.ortho;
     asked.dsm = flags.dsm;
-    const products::MapProducts made = products::MakeMapProducts(scene, asked, maps, threads);
-    base::LogInfo("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", made.grid.width, made.grid.height, made.grid.resolution_m,
-                  100.0 * made.filled, maps.string());
+    std::optional<products::MapPhotos> photos;
+    if (from_photos) photos.emplace(*survey, products::PictureMemory(settings.run.MemoryLimitBytes()), threads);
+    products::LogMaps(products::MakeMapProducts(scene, asked, maps, threads, photos ? &*photos : nullptr), maps);
   }
   if (!flags.plane.empty()) {
     const products::RayCaster caster = products::CasterOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads);

@@ -144,16 +144,16 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   if (kinds.along_cameras) options.video_path = "cameras";
   const bool along_cameras = options.video_seconds > 0.0 && options.video_path == "cameras";
   survey::Survey survey;
-  if (kinds.elevations || along_cameras) survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
+  const bool from_photos = options.ortho && options.ortho_source == "photos";
+  if (kinds.elevations || along_cameras || from_photos) survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
   const std::filesystem::path folder = pipeline.project.ProductsFolder();
   SceneSession session(pipeline.comm, pipeline.project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
   const scene::Scene& scene = session.scene();
   base::ThreadPool& threads = session.threads();
   std::filesystem::create_directories(folder);
   if (options.ortho || options.dsm) {
-    const products::MapProducts maps = products::MakeMapProducts(scene, options, folder, threads);
-    base::LogInfo("map of {} x {} cells of {:.3g} m, {:.0f} % filled: {}", maps.grid.width, maps.grid.height, maps.grid.resolution_m,
-                  100.0 * maps.filled, folder.string());
+    const products::MapPhotos photos{survey, products::PictureMemory(pipeline.settings.run.MemoryLimitBytes()), threads};
+    products::LogMaps(products::MakeMapProducts(scene, options, folder, threads, from_photos ? &photos : nullptr), folder);
   }
   const scene::Appearance appearance = products::AppearanceOf(options.exposure, scene.info());
   if (kinds.elevations) {

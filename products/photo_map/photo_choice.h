@@ -2,8 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,18 +10,10 @@
 
 namespace skyquilt::products {
 
-// Of the photos that see one place, the best ones, best first; -1: there are no more.
-constexpr int kBestViews = 6;
-using BestViews = std::array<int32_t, kBestViews>;
-
 // How badly a camera at `eye` shows a place: the squared tangent of the angle from straight down, and a twentieth of the squared distance in units of
 // typical_height_m. Infinite when the camera is not above the place, or sees it too obliquely (tan^2 > kMostOblique, 65 degrees).
 double ViewCost(const Eigen::Vector3d& place_enu, const Eigen::Vector3d& eye_enu, double typical_height_m);
 constexpr double kMostOblique = 4.6;
-
-// The views of each place (NaN: a place that none shall see). usable: per photo. What is in front of a place is not looked at.
-std::vector<BestViews> FindBestViews(const survey::Survey& survey, std::span<const Eigen::Vector3d> places_enu, std::span<const char> usable,
-                                     double typical_height_m, base::ThreadPool& threads);
 
 // Photos (1) that together see the places well and as evenly as possible, and have at most max_pixels pixels at full size, so that reading them does
 // not take too long. All of them if they do. One at least.

@@ -1,4 +1,4 @@
-#include "products/overlap_gains.h"
+#include "products/photo_map/overlap_gains.h"
 
 #include <Eigen/Core>
 #include <algorithm>

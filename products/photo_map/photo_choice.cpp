@@ -1,4 +1,4 @@
-#include "products/photo_choice.h"
+#include "products/photo_map/photo_choice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,6 @@ namespace {
 constexpr double kNearShare = 0.05;
 constexpr double kSteepEnough = 0.5;  // tan^2, 35 degrees: such views count when photos are left out
 constexpr double kAgain = 0.25;       // what one more view of a place is worth, of the view before
-constexpr size_t kPlacesPerTask = 256;
 
 bool IsInFrame(const survey::Survey& survey, const survey::Photo& photo, const Eigen::Vector3d& place_enu) {
   const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
@@ -35,34 +34,6 @@ double ViewCost(const Eigen::Vector3d& place_enu, const Eigen::Vector3d& eye_enu
   const double oblique = to_eye.head<2>().squaredNorm() / (to_eye.z() * to_eye.z());
   if (!(to_eye.z() > 0.0) || !(oblique <= kMostOblique)) return std::numeric_limits<double>::infinity();
   return oblique + kNearShare * to_eye.squaredNorm() / (typical_height_m * typical_height_m);
-}
-
-std::vector<BestViews> FindBestViews(const survey::Survey& survey, std::span<const Eigen::Vector3d> places_enu, std::span<const char> usable,
-                                     double typical_height_m, base::ThreadPool& threads) {
-  const std::vector<Eigen::Vector3d> eyes = EyesOf(survey);
-  std::vector<BestViews> views(places_enu.size());
-  threads.ParallelFor(static_cast<int64_t>((places_enu.size() + kPlacesPerTask - 1) / kPlacesPerTask), [&](int64_t task, int /*thread*/) {
-    base::ThrowIfCancelled();
-    std::vector<std::pair<double, int32_t>> costs;
-    const size_t begin = static_cast<size_t>(task) * kPlacesPerTask, end = std::min(begin + kPlacesPerTask, places_enu.size());
-    for (size_t i = begin; i < end; ++i) {
-      views[i].fill(-1);
-      costs.clear();
-      for (size_t photo = 0; photo < eyes.size(); ++photo) {
-        if (usable[photo] == 0) continue;
-        const double cost = ViewCost(places_enu[i], eyes[photo], typical_height_m);
-        if (std::isfinite(cost)) costs.emplace_back(cost, static_cast<int32_t>(photo));
-      }
-      std::sort(costs.begin(), costs.end());
-      size_t found = 0;
-      for (const auto& [cost, photo] : costs) {
-        if (!IsInFrame(survey, survey.photos[static_cast<size_t>(photo)], places_enu[i])) continue;
-        views[i][found++] = photo;
-        if (found == views[i].size()) break;
-      }
-    }
-  });
-  return views;
 }
 
 std::vector<char> ChooseFewPhotos(const survey::Survey& survey, std::span<const Eigen::Vector3d> places_enu, double max_pixels,

@@ -1,0 +1,209 @@
+#include "products/photo_map/photo_orthophoto.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "core/base/cancel.h"
+#include "core/base/file.h"
+#include "core/base/json_text.h"
+#include "core/base/log.h"
+#include "core/base/order_statistics.h"
+#include "core/base/progress.h"
+#include "core/base/text.h"
+#include "core/gis/geotiff.h"
+#include "products/map_area.h"
+#include "products/map_rays.h"
+#include "products/photo_map/map_edge.h"
+#include "products/photo_map/photo_map.h"
+#include "products/place_metadata.h"
+
+namespace skyquilt::products {
+namespace {
+
+constexpr size_t kNamedFailures = 3;
+constexpr int kFewestViews = 2;        // of the ground inside the cutline
+constexpr double kStepCells = 3.0;     // heights of neighbouring cells that differ by more are a step: a roof's edge
+
+// Heights of ground and roof meet in the cells between them, where the field shows neither. Each such cell is given to the nearer of the two, so that
+// no wall is drawn as a slope.
+std::vector<float> WithSharpSteps(const FieldMap& field, base::ThreadPool& threads) {
+  const gis::MapGrid& grid = field.grid;
+  const auto step_m = static_cast<float>(kStepCells * grid.resolution_m);
+  std::vector<float> sharp = field.height_m;
+  threads.ParallelFor(grid.height, [&](int64_t task, int /*thread*/) {
+    const int row = static_cast<int>(task);
+    for (int column = 0; column < grid.width; ++column) {
+      const float here = field.height_m[grid.Index(column, row)];
+      if (!std::isfinite(here)) continue;
+      float low = here, high = here;
+      for (int y = std::max(row - 1, 0); y <= std::min(row + 1, grid.height - 1); ++y) {
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, grid.width - 1); ++x) {
+          const float height = field.height_m[grid.Index(x, y)];
+          if (!std::isfinite(height)) continue;
+          low = std::min(low, height);
+          high = std::max(high, height);
+        }
+      }
+      if (high - low > step_m) sharp[grid.Index(column, row)] = here - low < high - here ? low : high;
+    }
+  });
+  return sharp;
+}
+
+std::vector<double> GroundHeights(const scene::SceneInfo& info, const FieldMap& field) {
+  const MapProjection projection(info, field.grid);
+  std::vector<double> z;
+  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(field.grid.size()) / 10000.0)));
+  for (int row = 0; row < field.grid.height; row += step) {
+    for (int column = 0; column < field.grid.width; column += step) {
+      const float height_m = field.height_m[field.grid.Index(column, row)];
+      if (!std::isfinite(height_m)) continue;
+      const MapProjection::VerticalLine line = projection.VerticalLineAt(field.grid.CellCentre(column, row));
+      z.push_back((line.start_enu + (projection.start_height_m() - static_cast<double>(height_m)) * line.down_enu).z());
+    }
+  }
+  return z;
+}
+
+double FlownHeight(const survey::Survey& survey, double ground_z) {
+  std::vector<double> heights;
+  for (const survey::Photo& photo : survey.photos) {
+    const double height_m = photo.cam_from_enu.OriginInSource().z() - ground_z;
+    if (height_m > 0.0) heights.push_back(height_m);
+  }
+  return base::Median(heights);
+}
+
+void WarnOfFailures(const std::vector<std::string>& failures, size_t usable) {
+  if (failures.empty()) return;
+  const size_t named = std::min(failures.size(), kNamedFailures);
+  base::LogWarning("the orthophoto does without {} of {} photos, which cannot be read:\n  {}{}", failures.size(), usable,
+                   base::Join(std::span(failures).first(named), "\n  "), named < failures.size() ? "\n  ..." : "");
+}
+
+gis::GeoTiffSpec SourcesSpec(const scene::SceneInfo& info, const gis::MapGrid& grid) {
+  gis::GeoTiffSpec spec;
+  spec.grid = grid;
+  spec.type = gis::PixelType::kUint16;
+  spec.labels = true;
+  spec.nodata = kNoSource;
+  spec.band_names = {"source: 1 trained field, 2 + i photo i, see ortho_sources.json"};
+  spec.metadata = PlaceMetadata(info, "Photo that each cell of the orthophoto comes from");
+  spec.metadata["TIFFTAG_SOFTWARE"] = "skyquilt";
+  return spec;
+}
+
+void WriteSources(const survey::Survey& survey, const PhotoOrthophoto& made, const std::vector<int64_t>& cells_of, const std::filesystem::path& file) {
+  nlohmann::ordered_json photos = nlohmann::ordered_json::object();
+  for (size_t i = 0; i < survey.photos.size(); ++i) {
+    const int64_t cells = cells_of[kFirstPhotoSource + i];
+    if (cells > 0) photos[survey.photos[i].name] = {{"value", kFirstPhotoSource + i}, {"cells", cells}};
+  }
+  const nlohmann::ordered_json sources = {
+      {"cell_m", made.grid.resolution_m}, {"cells", made.cells}, {"field_cells", made.field_cells}, {"photos", photos}};
+  base::WriteFileAtomically(file, base::JsonText(sources, 1) + "\n");
+}
+
+}  // namespace
+
+double PhotoResolution_m(const survey::Survey& survey, double ground_z) {
+  std::vector<double> gsd_m;
+  for (const survey::Photo& photo : survey.photos) {
+    const double height_m = photo.cam_from_enu.OriginInSource().z() - ground_z;
+    if (height_m > 0.0) gsd_m.push_back(camera::GroundSamplingDistance(survey.cameras[static_cast<size_t>(photo.camera)], height_m));
+  }
+  return gsd_m.empty() ? std::numeric_limits<double>::quiet_NaN() : NiceResolution(base::Median(gsd_m));
+}
+
+std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info, const survey::Survey& survey, const FieldMap& field,
+                                                    const ProductOptions& options, const std::optional<gis::Boundary>& boundary, size_t memory,
+                                                    const std::filesystem::path& folder, base::ThreadPool& threads) {
+  const std::vector<double> ground = GroundHeights(info, field);
+  const double ground_z = ground.empty() ? std::numeric_limits<double>::quiet_NaN() : base::Median(ground);
+  const double photo_resolution_m = PhotoResolution_m(survey, ground_z);
+  if (!std::isfinite(photo_resolution_m)) {
+    base::LogWarning("no photo looks down on the ground, so the orthophoto is drawn from the trained scene");
+    return std::nullopt;
+  }
+  std::vector<char> usable;
+  for (const survey::Photo& photo : survey.photos) usable.push_back(photo.is_test ? 0 : 1);
+  const auto n_usable = static_cast<size_t>(std::count(usable.begin(), usable.end(), 1));
+
+  PhotoOrthophoto made{.cutline = gis::Boundary({})};
+  ProductOptions fine = options;
+  if (fine.resolution_m <= 0.0) fine.resolution_m = std::min(photo_resolution_m, field.grid.resolution_m);
+  made.grid = PlanMapGrid(info, fine);
+  if (boundary) made.grid = CropTo(made.grid, *boundary);
+  const gis::MapGrid& grid = made.grid;
+  const MapProjection projection(info, grid);
+  const HeightGrid surface(field.grid, WithSharpSteps(field, threads));
+  PhotoMap map({.survey = survey,
+                .usable = usable,
+                .grid = grid,
+                .projection = projection,
+                .surface = surface,
+                .field_rgba = field.rgba,
+                .ground_z = ground_z,
+                .flown_height_m = FlownHeight(survey, ground_z),
+                .picture_bytes = memory},
+               threads);
+  WarnOfFailures(map.failures(), n_usable);
+  made.unreadable = static_cast<int>(map.failures().size());
+  if (map.failures().size() == n_usable) {
+    base::LogWarning("no photo can be read, so the orthophoto is drawn from the trained scene. Put the photos back to {}, then run this again",
+                     survey.photo_root.string());
+    return std::nullopt;
+  }
+  const MapNodes& nodes = map.nodes();
+  const gis::Boundary& cutline = made.cutline = gis::Boundary(CutlineOf({nodes.GridOf(grid), nodes.seen}, kFewestViews, options.crop_m));
+  if (cutline.rings().empty()) {
+    base::LogWarning("no ground is left that at least {} photos see{}, so the orthophoto is drawn from the trained scene", kFewestViews,
+                     options.crop_m > 0.0 ? " when products.crop_m is cut off all round" : "");
+    return std::nullopt;
+  }
+
+  gis::GeoTiffWriter ortho(folder / "orthophoto.tif", OrthophotoSpec(info, grid, "Orthophoto"));
+  gis::GeoTiffWriter sources(folder / "ortho_sources.tif", SourcesSpec(info, grid));
+  base::Progress progress("orthophoto", static_cast<double>(grid.width) * grid.height, "cells");
+  std::vector<int64_t> cells_of(kFirstPhotoSource + survey.photos.size(), 0);
+  PhotoMapRows rows;
+  for (int first_row = 0; first_row < grid.height; first_row += PhotoMap::kRows) {
+    const int n_rows = std::min(PhotoMap::kRows, grid.height - first_row);
+    map.PaintRows(first_row, n_rows, threads, &rows);
+    gis::MapGrid part = grid;
+    part.top -= first_row * grid.resolution_m;
+    part.height = n_rows;
+    std::vector<uint8_t> inside = cutline.Mask(part);
+    if (boundary) {
+      const std::vector<uint8_t> wanted = boundary->Mask(part);
+      std::transform(inside.begin(), inside.end(), wanted.begin(), inside.begin(), [](uint8_t a, uint8_t b) { return static_cast<uint8_t>(a & b); });
+    }
+    for (size_t cell = 0; cell < rows.sources.size(); ++cell) {
+      if (inside[cell] == 0) {
+        rows.sources[cell] = kNoSource;
+        std::fill_n(rows.rgba.begin() + static_cast<std::ptrdiff_t>(4 * cell), 4, uint8_t{0});
+      }
+      ++cells_of[rows.sources[cell]];
+    }
+    ortho.WriteRows(first_row, n_rows, std::span<const uint8_t>(rows.rgba));
+    sources.WriteRows(first_row, n_rows, std::span<const uint16_t>(rows.sources));
+    progress.Update(static_cast<double>(first_row + n_rows) * grid.width);
+  }
+  ortho.Close();
+  sources.Close();
+  progress.Finish();
+  for (size_t i = kFromField; i < cells_of.size(); ++i) {
+    made.cells += cells_of[i];
+    if (i >= kFirstPhotoSource && cells_of[i] > 0) ++made.photos;
+  }
+  made.field_cells = cells_of[kFromField];
+  WriteSources(survey, made, cells_of, folder / "ortho_sources.json");
+  WriteCutline(cutline.rings(), grid, folder / "cutline.gpkg");
+  return made;
+}
+
+}  // namespace skyquilt::products

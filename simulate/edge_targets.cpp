@@ -49,7 +49,7 @@ bool InSun(const World& world, const OpenGround& ground) {
 }
 
 // Even open ground without roads and shadows below all of a square of this side.
-bool IsFree(const World& world, const OpenGround& middle, double side_m, double yaw_rad) {
+bool IsFreeAndLit(const World& world, const OpenGround& middle, double side_m, double yaw_rad) {
   constexpr int kSteps = 10;
   const Vector2d centre = middle.position.cast<double>().head<2>();
   const Vector2d along = kMargin * 0.5 * side_m / kSteps * Vector2d(std::cos(yaw_rad), std::sin(yaw_rad));
@@ -97,7 +97,7 @@ std::vector<EdgeTarget> ChooseEdgeTargets(const World& world, const PlaceSpec& p
     const double yaw_rad = YawAt(projection, *found);
     for (const double share : kSideShares) {
       found->side_m = SideOf(*found, share);
-      if (!Meets(at, found->side_m, others) && IsFree(world, found->ground, found->side_m, yaw_rad)) return found;
+      if (!Meets(at, found->side_m, others) && IsFreeAndLit(world, found->ground, found->side_m, yaw_rad)) return found;
     }
     return std::optional<TargetPlace>();
   });

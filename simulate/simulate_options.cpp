@@ -119,10 +119,10 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
 }
 
 void SimulateOptions::Check() const {
-  const PlaceSpec place = ResolvePlace(*this);
+  const PlaceSpec resolved = ResolvePlace(*this);
   if (ortho_cell_m == 0.0) return;
   const geo::EnuFrame frame({latitude_deg, geo::WrapLongitudeDeg(longitude_deg), height_m});
-  PlanTrueOrthophoto(place, PlanFlight(place, 0.0), 0.0, frame, ortho_cell_m);
+  PlanTrueOrthophoto(resolved, PlanFlight(resolved, 0.0), 0.0, frame, ortho_cell_m);
 }
 
 }  // namespace skyquilt::simulate

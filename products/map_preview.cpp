@@ -24,7 +24,7 @@ constexpr int kLattice = 32;  // exactly projected points per side, less one; li
 class CellLookup {
  public:
   CellLookup(const scene::SceneInfo& info, const gis::MapGrid& grid, int width, int height) : width_(width), height_(height) {
-    const MapProjection projection(info, grid);
+    const gis::MapProjection projection(info.origin, grid);
     const double z = 0.5 * (info.min_enu.z() + info.max_enu.z());
     for (int j = 0; j <= kLattice; ++j) {
       for (int i = 0; i <= kLattice; ++i) {

@@ -3,11 +3,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
-#include "core/geo/enu_frame.h"
-#include "core/gis/map_grid.h"
+#include "core/gis/map_projection.h"
 #include "core/scene/scene.h"
 #include "products/product_options.h"
 
@@ -19,28 +17,6 @@ double NiceResolution(double metres);
 // A map grid that covers the scene's box. If it has more than options.max_pixels cells, an automatic resolution is made coarser, with a warning; a
 // requested one throws base::UsageError with a resolution that fits.
 gis::MapGrid PlanMapGrid(const scene::SceneInfo& info, const ProductOptions& options);
-
-// Converts between map coordinates (UTM, or local x, y without geo-reference) and the survey's ENU frame.
-class MapProjection {
- public:
-  MapProjection(const scene::SceneInfo& info, const gis::MapGrid& grid);
-
-  // Vertical line at a position on the map: the points start + s * down, s in metres. Their height is start_height_m - s, to well below a millimetre.
-  struct VerticalLine {
-    Eigen::Vector3d start_enu;
-    Eigen::Vector3d down_enu;  // length 1; the ellipsoid's inward normal
-  };
-  double start_height_m() const { return start_height_m_; }  // ellipsoidal, or local z without geo-reference
-  VerticalLine VerticalLineAt(const Eigen::Vector2d& easting_northing) const;
-  Eigen::Vector2d EastingNorthing(const Eigen::Vector3d& x_in_enu) const;
-  // The same and the height, ellipsoidal or local z.
-  Eigen::Vector3d MapFromEnu(const Eigen::Vector3d& x_in_enu) const;
-
- private:
-  gis::MapGrid grid_;
-  double start_height_m_ = 0.0;
-  std::optional<geo::EnuFrame> frame_;
-};
 
 // Rays of one map row, one per cell inside the scene's box. A ray begins at the top of the blocks at this cell and ends at their bottom.
 struct MapRays {
@@ -59,10 +35,10 @@ class MapRayGenerator {
  private:
   const scene::SceneInfo& info_;
   gis::MapGrid grid_;
-  MapProjection projection_;
+  gis::MapProjection projection_;
   int step_;  // cells between lattice nodes
   int lattice_columns_;
-  std::vector<MapProjection::VerticalLine> lattice_;  // row-major
+  std::vector<gis::MapProjection::VerticalLine> lattice_;  // row-major
 };
 
 }  // namespace skyquilt::products

@@ -57,7 +57,7 @@ bool FindFlownAt(const survey::Survey& survey, double ground_z, FlownAt* flown) 
 }
 
 // The surface on a grid with larger cells than the map, which heights between sparse points do not fill with detail anyhow.
-HeightGrid SurfaceOf(const gis::MapGrid& map, const MapProjection& projection, const scene::HeightMap& heights) {
+HeightGrid SurfaceOf(const gis::MapGrid& map, const gis::MapProjection& projection, const scene::HeightMap& heights) {
   gis::MapGrid grid = map;
   grid.resolution_m *= kSurfaceStep;
   grid.width = (map.width + kSurfaceStep - 1) / kSurfaceStep;
@@ -65,7 +65,7 @@ HeightGrid SurfaceOf(const gis::MapGrid& map, const MapProjection& projection, c
   std::vector<float> heights_m(grid.size());
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {
-      const MapProjection::VerticalLine line = projection.VerticalLineAt(grid.CellCentre(column, row));
+      const gis::MapProjection::VerticalLine line = projection.VerticalLineAt(grid.CellCentre(column, row));
       const double s = (heights.At(line.start_enu.x(), line.start_enu.y()) - line.start_enu.z()) / line.down_enu.z();
       heights_m[grid.Index(column, row)] = static_cast<float>(projection.start_height_m() - s);
     }
@@ -116,7 +116,7 @@ PointPreview MakePointPreview(const survey::Survey& survey, const ProductOptions
   const std::optional<gis::Boundary> boundary = BoundaryOf(grid, options);
   if (boundary) grid = CropTo(grid, *boundary);
 
-  const MapProjection projection(info, grid);
+  const gis::MapProjection projection(info.origin, grid);
   const HeightGrid surface = SurfaceOf(grid, projection, heights);
   const std::vector<char> usable = ChoosePhotosFor(survey, heights, area, flown.height_m, threads);
   PhotoMap painter({.survey = survey,

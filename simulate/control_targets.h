@@ -10,6 +10,7 @@
 #include "simulate/flight.h"
 #include "simulate/place_spec.h"
 #include "simulate/target_paint.h"
+#include "simulate/target_places.h"
 #include "simulate/world.h"
 
 namespace skyquilt::simulate {
@@ -22,8 +23,6 @@ struct ControlTarget {
   double yaw_rad = 0.0;                                // counter-clockwise from east
   std::vector<uint32_t> photos;                        // that see the centre; indices, ascending
 };
-
-inline constexpr size_t kMinTargetViews = 5;  // photos that must see a target
 
 // Each target is the candidate that is farthest from those chosen before it; control and check points take turns, so that both spread over the area.
 // Fewer than asked for where there is no room. The same result for any number of threads.

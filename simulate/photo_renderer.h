@@ -9,6 +9,7 @@
 #include "core/camera/camera.h"
 #include "core/geo/transform.h"
 #include "core/image/image.h"
+#include "simulate/ray_shader.h"
 #include "simulate/world.h"
 
 namespace skyquilt::simulate {
@@ -38,14 +39,13 @@ class PhotoRenderer {
 
  private:
   struct Frame;  // one photo's pose in single precision
-  void Trace(const Frame& frame, const MovingScene& moving, int tile_x, int tile_y, raytrace::RayPacket& rays, uint32_t* on_moving) const;
+  void SetRays(const Frame& frame, int tile_x, int tile_y, raytrace::RayPacket& rays) const;
   void ShadeTile(const Frame& frame, const MovingScene& moving, int tile_x, int tile_y, Rendering& out, std::vector<char>& row_masked) const;
-  Eigen::Vector3f Shade(const Hit& hit, const Surface& surface, float sun_share) const;
 
   const World& world_;
   const camera::Camera& camera_;
-  int grid_;  // samples per pixel side
-  bool soft_shadows_;
+  RayShader shader_;
+  int grid_;                                       // samples per pixel side
   std::vector<Eigen::Vector3f> sample_direction_;  // camera frame, unit, (width * grid) x (height * grid)
 };
 

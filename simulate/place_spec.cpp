@@ -363,6 +363,9 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
   Overlay(options.sun_azimuth_deg, place.sun_azimuth_deg);
   Overlay(options.sun_elevation_deg, place.sun_elevation_deg);
   CheckControlCrs(options);
+  if (options.ortho_cell_m > 0.0 && place.flight != FlightKind::kSurvey) {
+    Refuse("ortho_cell_m", Text(options.ortho_cell_m), "level photos make no orthophoto; set it to 0, or flight to survey");
+  }
   return place;
 }
 

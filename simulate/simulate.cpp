@@ -18,6 +18,7 @@
 #include "simulate/control_marks.h"
 #include "simulate/control_targets.h"
 #include "simulate/control_writer.h"
+#include "simulate/edge_targets.h"
 #include "simulate/flight.h"
 #include "simulate/flights/level_flight.h"
 #include "simulate/model_frame.h"
@@ -26,6 +27,7 @@
 #include "simulate/sparse_points.h"
 #include "simulate/surface_mesh.h"
 #include "simulate/survey_writer.h"
+#include "simulate/true_orthophoto.h"
 #include "simulate/world.h"
 
 namespace skyquilt::simulate {
@@ -63,17 +65,29 @@ void WarnAboutTrucks(const World& world, const PlaceSpec& place) {
   if (n < place.city.trucks) base::LogWarning("simulate: the streets have room for {} of {} trucks (simulate.trucks)", n, place.city.trucks);
 }
 
+struct Targets {
+  std::vector<SurveyedTarget> control;
+  std::vector<EdgeTarget> edges;
+};
+
 // Puts the targets on the ground. Nothing when none are asked for.
-std::vector<SurveyedTarget> LayOutControl(const SimulateOptions& options, const PlaceSpec& place, const std::vector<PhotoPlan>& photos, World& world,
-                                          base::ThreadPool& threads) {
+Targets LayOutTargets(const SimulateOptions& options, const PlaceSpec& place, const std::vector<PhotoPlan>& photos, const geo::EnuFrame& frame,
+                      World& world, base::ThreadPool& threads) {
   std::vector<ControlTarget> targets = ChooseTargets(world, place, photos, options.control_points, options.check_points, threads);
   const int wanted = options.control_points + options.check_points;
   if (static_cast<int>(targets.size()) < wanted) {
     base::LogWarning("simulate: the place has open ground that {} photos see for {} of {} control and check points", kMinTargetViews, targets.size(),
                      wanted);
   }
-  world.PaintTargets(PaintOf(targets));
-  return SurveyTargets(std::move(targets), options, place.camera, photos, place.seed);
+  std::vector<PaintedTarget> painted = PaintOf(targets);
+  std::vector<EdgeTarget> edges = ChooseEdgeTargets(world, place, photos, frame, painted, options.edge_targets, threads);
+  if (static_cast<int>(edges.size()) < options.edge_targets) {
+    base::LogWarning("simulate: the place has even open ground in the sun for {} of {} slanted edges (simulate.edge_targets)", edges.size(),
+                     options.edge_targets);
+  }
+  for (const EdgeTarget& edge : edges) painted.push_back(edge.paint);
+  world.PaintTargets(std::move(painted));
+  return {SurveyTargets(std::move(targets), options, place.camera, photos, place.seed), std::move(edges)};
 }
 
 void WriteControl(const SimulateOptions& options, const PlaceSpec& place, const std::vector<PhotoPlan>& photos, std::vector<SurveyedTarget> points,
@@ -104,12 +118,14 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   WarnAboutTrucks(world, place);
   std::vector<PhotoPlan> photos = plan(place, world);
   ApplyTagFaults(place.tag_faults, place.seed, photos);
-  std::vector<SurveyedTarget> control = LayOutControl(options, place, photos, world, threads);
+  std::optional<gis::MapGrid> ortho;
+  if (options.ortho_cell_m > 0.0) ortho = PlanTrueOrthophoto(place, photos, world.TakeoffHeight(place), frame, options.ortho_cell_m);
+  Targets targets = LayOutTargets(options, place, photos, frame, world, threads);
   const PhotoRenderer renderer(world, place.camera, options.samples_per_pixel, options.soft_shadows);
 
   SimulateSummary summary;
   summary.n_photos = static_cast<int>(photos.size());
-  summary.n_control = static_cast<int>(control.size());
+  summary.n_control = static_cast<int>(targets.control.size());
   summary.n_buildings = static_cast<int>(world.buildings().size());
   const bool is_level = place.flight != FlightKind::kSurvey;
   std::vector<SurfaceSeed> seeds;
@@ -151,7 +167,12 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   WriteExposureTruth(folder, photos, place);
   WriteBuildingTruth(folder, world.buildings(), place, frame);
   WriteSurfaceMesh(world, folder / "truth" / "surface.ply");
-  if (!control.empty()) WriteControl(options, place, photos, std::move(control), frame, folder);
+  if (options.edge_targets > 0) WriteEdgeTargets(targets.edges, folder / "truth" / "edge_targets.json");
+  if (ortho) {
+    WriteTrueOrthophoto(world, *ortho, frame, std::max(4, options.samples_per_pixel), options.soft_shadows, threads,
+                        folder / "truth" / "orthophoto.tif");
+  }
+  if (!targets.control.empty()) WriteControl(options, place, photos, std::move(targets.control), frame, folder);
   base::ThrowIfCancelled();
   WriteSummary(folder, place, options, frame, photos.size(), model_from_enu);
   fs::remove(folder / kStarted);

@@ -6,6 +6,8 @@
 //   truth/normals/<stem>.png           normals of their surfaces (core/image/normal_image.h): of the triangles, ENU, on the camera's side
 //   truth/classes/<stem>.png           what their surfaces are: 8 bits, one channel, the numbers of core/survey/surface_class.h
 //   truth/surface.ply                  the static surface as a mesh, ENU metres, with the class of each face (simulate/surface_mesh.h)
+//   truth/orthophoto.tif               the true orthophoto, RGBA in UTM, with simulate.ortho_cell_m (true_orthophoto.h)
+//   truth/edge_targets.json            where slanted edges are, with simulate.edge_targets (edge_targets.h)
 //   truth/masks/<name>.jpg.png         0 on a moving car or its shadow; only for photos that show one
 //   truth/exposure.json                brightness of every photo
 //   truth/buildings.json               position and size of every part of a building, and the outlines that parts have together

@@ -1,8 +1,11 @@
 #include "simulate/simulate_options.h"
 
+#include "core/geo/enu_frame.h"
+#include "simulate/flight.h"
 #include "simulate/flights/flight_settings.h"
 #include "simulate/place_spec.h"
 #include "simulate/simulate.h"
+#include "simulate/true_orthophoto.h"
 
 namespace skyquilt::simulate {
 
@@ -74,6 +77,10 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
        "a bridge, which is no building: deck and ramps of a street, 5 to 6 m above a crossing in the middle of the place"},
       {"trucks", &O::trucks, Range{0, 100},
        "number of trucks and containers parked in the streets, 8 m long and 3.5 m high, as far as there is room; they are no buildings"},
+      {"ortho_cell_m", &O::ortho_cell_m, Range{0.005, 10}.Or(0),
+       "also write the true orthophoto, straight from above and without moving cars, with cells of this many metres; 0: none"},
+      {"edge_targets", &O::edge_targets, Range{0, 100},
+       "number of slanted-edge targets on open ground, half black and half white, to measure the sharpness of maps and photos"},
       {"exact_frame", &O::exact_frame, Range(),
        "COLMAP model in the true frame in metres; false: turned, scaled and shifted at random, as structure from motion makes it"},
       {"tag_lag_s", &O::tag_lag_s, Range{-5, 10}, "tagged positions are those of this many seconds before the photo", kFault},
@@ -112,7 +119,10 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
 }
 
 void SimulateOptions::Check() const {
-  ResolvePlace(*this);
+  const PlaceSpec resolved = ResolvePlace(*this);
+  if (ortho_cell_m == 0.0) return;
+  const geo::EnuFrame frame({latitude_deg, geo::WrapLongitudeDeg(longitude_deg), height_m});
+  PlanTrueOrthophoto(resolved, PlanFlight(resolved, 0.0), 0.0, frame, ortho_cell_m);
 }
 
 }  // namespace skyquilt::simulate

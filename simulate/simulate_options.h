@@ -49,6 +49,8 @@ struct SimulateOptions {
   double tree_density = 1.0;              // 0..10, factor on the number of trees
   bool bridge = false;                    // over a crossing in the middle of the place
   int trucks = 0;                         // 0..100, parked trucks and containers
+  double ortho_cell_m = 0.0;              // 0 or 0.005..10, width of the cells of a true orthophoto; 0: none
+  int edge_targets = 0;                   // 0..100 slanted-edge targets on the ground, see edge_targets.h
   bool exact_frame = true;                // false: the COLMAP model is under a random similarity, as structure from motion makes it
   // Errors of the tags; none by default. See tag_faults.h.
   double tag_lag_s = 0.0;                // -5..10, the tagged position is where the drone was this long before

@@ -21,8 +21,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kFirstPhoto_s = 1777888800.0;  // 2026-05-04 10:00:00 on the camera's clock
-// With this factor, grass in the sun gets a medium brightness.
-constexpr float kNormalExposure = 1.35F;
 
 // The options as the user gave them.
 Json OptionsJson(SimulateOptions options) {
@@ -30,12 +28,14 @@ Json OptionsJson(SimulateOptions options) {
   for (const config::Option& option : config::OptionsOf(options)) {
     std::visit([&](const auto* value) { json[option.key] = *value; }, option.value);
   }
-  // Surveys look as before there were other flights.
+  // Surveys look as before there were these options.
   if (options.flight == "survey") {
     json.erase("flight");
     json.erase("photos");
   }
   if (options.tags == "auto") json.erase("tags");
+  if (options.ortho_cell_m == 0.0) json.erase("ortho_cell_m");
+  if (options.edge_targets == 0) json.erase("edge_targets");
   return json;
 }
 

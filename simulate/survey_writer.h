@@ -17,6 +17,9 @@
 
 namespace skyquilt::simulate {
 
+// Stored pixels at normal exposure are linear light times this: grass in the sun gets a medium brightness.
+inline constexpr float kNormalExposure = 1.35F;
+
 // How a camera turns linear light into stored pixels.
 struct Development {
   std::array<double, 3> gain = {1.0, 1.0, 1.0};               // red, green, blue, relative to normal exposure

@@ -9,8 +9,6 @@
 namespace skyquilt::simulate {
 namespace {
 
-constexpr float kWhite = 0.55F;  // albedo: bright, but seldom clipped in normally exposed photos
-constexpr float kBlack = 0.03F;
 constexpr double kWidestPixel_m = 4.0;  // pixels that are wider hide the targets anyway
 
 // Mean sign over [x - width/2, x + width/2].
@@ -41,8 +39,9 @@ void TargetPaint::Apply(const Hit& hit, Surface& surface) const {
     const auto half = static_cast<float>(0.5 * target->side_m);
     const float covered = Bar(x, -half, half, width) * Bar(y, -half, half, width);
     if (covered <= 0.0F) continue;
-    const float white = 0.5F * (1.0F + MeanSign(x, width) * MeanSign(y, width));
-    const Eigen::Vector3f paint = Eigen::Vector3f::Constant(kBlack + (kWhite - kBlack) * white);
+    const float sign = target->pattern == TargetPattern::kFourFields ? MeanSign(x, width) * MeanSign(y, width) : -MeanSign(y, width);
+    const float white = 0.5F * (1.0F + sign);
+    const Eigen::Vector3f paint = Eigen::Vector3f::Constant(target->black + (target->white - target->black) * white);
     surface.albedo += covered * (paint - surface.albedo);
     surface.mirror_share *= 1.0F - covered;
   }

@@ -1,4 +1,5 @@
-// Targets of ground control: squares on the ground in four fields, black and white in turn, whose common corner is the point.
+// Targets painted on the ground, squares in black and white: those of ground control in four fields, whose common corner is the point, and slanted
+// edges in two halves.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,10 +9,16 @@
 
 namespace skyquilt::simulate {
 
+enum class TargetPattern { kFourFields, kTwoHalves };
+
 struct PaintedTarget {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // ENU metres
   double side_m = 1.0;                               // of the square, measured horizontally
   double yaw_rad = 0.0;                              // of one side, counter-clockwise from east
+  TargetPattern pattern = TargetPattern::kFourFields;
+  // Albedo: by default bright, but seldom clipped in normally exposed photos. Of two halves the left one is black, along yaw.
+  float black = 0.03F;
+  float white = 0.55F;
 };
 
 class TargetPaint {

@@ -147,7 +147,10 @@ Survey SurveyFromJson(const json& value) {
                          truth.at("exposure_json").get<std::string>(),
                          truth.value("normals_folder", ""),
                          truth.value("classes_folder", ""),
-                         truth.value("surface_ply", "")};
+                         truth.value("surface_ply", ""),
+                         truth.value("masks_folder", ""),
+                         truth.value("ortho_tif", ""),
+                         truth.value("edge_targets_json", "")};
   }
   return survey;
 }
@@ -213,9 +216,11 @@ void SaveSurvey(const Survey& survey, const std::filesystem::path& folder) {
                         {"photos", ordered_json::array()}};
   if (survey.HasTracks()) value["n_observations"] = survey.tracks.observations() + survey.kept_tracks.observations();
   if (survey.truth) {
-    value["truth"] = {{"depth_folder", survey.truth->depth_folder.string()},     {"buildings_json", survey.truth->buildings_json.string()},
-                      {"exposure_json", survey.truth->exposure_json.string()},   {"normals_folder", survey.truth->normals_folder.string()},
-                      {"classes_folder", survey.truth->classes_folder.string()}, {"surface_ply", survey.truth->surface_ply.string()}};
+    value["truth"] = {{"depth_folder", survey.truth->depth_folder.string()},          {"buildings_json", survey.truth->buildings_json.string()},
+                      {"exposure_json", survey.truth->exposure_json.string()},        {"normals_folder", survey.truth->normals_folder.string()},
+                      {"classes_folder", survey.truth->classes_folder.string()},      {"surface_ply", survey.truth->surface_ply.string()},
+                      {"masks_folder", survey.truth->masks_folder.string()},          {"ortho_tif", survey.truth->ortho_tif.string()},
+                      {"edge_targets_json", survey.truth->edge_targets_json.string()}};
   }
   if (!survey.control.points.empty()) value["control"] = ToJson(survey.control);
   for (const Problem& problem : survey.problems) value["problems"].push_back(ToJson(problem));

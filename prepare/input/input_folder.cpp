@@ -81,6 +81,9 @@ void ReadSimulated(const fs::path& folder, bool own_model, InputFolder& found) {
     if (fs::is_directory(truth / "normals")) found.truth->normals_folder = truth / "normals";
     if (fs::is_directory(truth / "classes")) found.truth->classes_folder = truth / "classes";
     if (fs::is_regular_file(truth / "surface.ply")) found.truth->surface_ply = truth / "surface.ply";
+    if (fs::is_directory(truth / "masks")) found.truth->masks_folder = truth / "masks";
+    if (fs::is_regular_file(truth / "orthophoto.tif")) found.truth->ortho_tif = truth / "orthophoto.tif";
+    if (fs::is_regular_file(truth / "edge_targets.json")) found.truth->edge_targets_json = truth / "edge_targets.json";
   }
 }
 

@@ -325,7 +325,7 @@ LightPlaces PlacesForLight(const PhotoMapInput& input) {
       const Eigen::Vector2d position = input.grid.CellCentre(cell.x(), cell.y());
       const double height_m = input.surface.HeightAt(position);
       if (!std::isfinite(height_m)) continue;
-      const MapProjection::VerticalLine line = input.projection.VerticalLineAt(position);
+      const gis::MapProjection::VerticalLine line = input.projection.VerticalLineAt(position);
       places.enu.emplace_back(line.start_enu + (input.projection.start_height_m() - height_m) * line.down_enu);
       places.map.emplace_back(position.x(), position.y(), height_m);
     }
@@ -343,7 +343,7 @@ gis::MapGrid MapNodes::GridOf(const gis::MapGrid& map) const {
   return grid;
 }
 
-CellPlaces::CellPlaces(const gis::MapGrid& grid, const MapProjection& projection, int column, int row, int columns, int rows)
+CellPlaces::CellPlaces(const gis::MapGrid& grid, const gis::MapProjection& projection, int column, int row, int columns, int rows)
     : column_(column), row_(row), width_(std::max(columns, 1)), height_(std::max(rows, 1)), start_height_m_(projection.start_height_m()) {
   for (size_t i = 0; i < 4; ++i) {
     corners_[i] = projection.VerticalLineAt(grid.CellCentre(column_ + (i % 2 == 0 ? 0.0 : width_), row_ + (i < 2 ? 0.0 : height_)));
@@ -361,7 +361,7 @@ Eigen::Vector3d CellPlaces::At(double column, double row, double height_m) const
   return start + (start_height_m_ - height_m) * down;
 }
 
-std::vector<Eigen::Vector3d> EyesOnMap(const survey::Survey& survey, const MapProjection& projection) {
+std::vector<Eigen::Vector3d> EyesOnMap(const survey::Survey& survey, const gis::MapProjection& projection) {
   std::vector<Eigen::Vector3d> eyes;
   eyes.reserve(survey.photos.size());
   for (const survey::Photo& photo : survey.photos) eyes.push_back(projection.MapFromEnu(photo.cam_from_enu.OriginInSource()));

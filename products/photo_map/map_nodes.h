@@ -9,7 +9,7 @@
 
 #include "core/base/thread_pool.h"
 #include "core/survey/survey.h"
-#include "products/map_rays.h"
+#include "core/gis/map_projection.h"
 #include "products/photo_map/height_grid.h"
 #include "products/photo_map/photo_light.h"
 #include "products/photo_map/photo_pictures.h"
@@ -21,7 +21,7 @@ struct PhotoMapInput {
   const survey::Survey& survey;
   std::span<const char> usable;  // per photo: 1 if it may be shown
   const gis::MapGrid& grid;      // of the map
-  const MapProjection& projection;
+  const gis::MapProjection& projection;
   const HeightGrid& surface;                    // heights as of MapProjection
   std::span<const uint8_t> field_rgba;          // the field's colours on the surface's grid, display values; empty: not known
   double ground_z = 0.0;                        // ENU, of most of the ground
@@ -46,17 +46,17 @@ constexpr int kMostSeen = 8;
 // Places of the cells of a part of a map on Earth. The part must be smaller than a few kilometres: lines down are linear between its corners.
 class CellPlaces {
  public:
-  CellPlaces(const gis::MapGrid& grid, const MapProjection& projection, int column, int row, int columns, int rows);
+  CellPlaces(const gis::MapGrid& grid, const gis::MapProjection& projection, int column, int row, int columns, int rows);
   // ENU place of a position in cells of the grid (whole numbers at centres) at a height of the map.
   Eigen::Vector3d At(double column, double row, double height_m) const;
 
  private:
   double column_, row_, width_, height_, start_height_m_;
-  std::array<MapProjection::VerticalLine, 4> corners_;
+  std::array<gis::MapProjection::VerticalLine, 4> corners_;
 };
 
 // Cameras in map space (easting, northing, height), as HeightGrid::IsVisible wants them.
-std::vector<Eigen::Vector3d> EyesOnMap(const survey::Survey& survey, const MapProjection& projection);
+std::vector<Eigen::Vector3d> EyesOnMap(const survey::Survey& survey, const gis::MapProjection& projection);
 // How far cells may rise above a line of sight and not hide what is behind, metres.
 double SightSlack_m(const HeightGrid& surface);
 

@@ -55,14 +55,14 @@ std::vector<float> WithSharpSteps(const FieldMap& field, base::ThreadPool& threa
 }
 
 std::vector<double> GroundHeights(const scene::SceneInfo& info, const FieldMap& field) {
-  const MapProjection projection(info, field.grid);
+  const gis::MapProjection projection(info.origin, field.grid);
   std::vector<double> z;
   const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(field.grid.size()) / 10000.0)));
   for (int row = 0; row < field.grid.height; row += step) {
     for (int column = 0; column < field.grid.width; column += step) {
       const float height_m = field.height_m[field.grid.Index(column, row)];
       if (!std::isfinite(height_m)) continue;
-      const MapProjection::VerticalLine line = projection.VerticalLineAt(field.grid.CellCentre(column, row));
+      const gis::MapProjection::VerticalLine line = projection.VerticalLineAt(field.grid.CellCentre(column, row));
       z.push_back((line.start_enu + (projection.start_height_m() - static_cast<double>(height_m)) * line.down_enu).z());
     }
   }
@@ -139,7 +139,7 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   made.grid = PlanMapGrid(info, fine);
   if (boundary) made.grid = CropTo(made.grid, *boundary);
   const gis::MapGrid& grid = made.grid;
-  const MapProjection projection(info, grid);
+  const gis::MapProjection projection(info.origin, grid);
   const HeightGrid surface(field.grid, WithSharpSteps(field, threads));
   PhotoMap map({.survey = survey,
                 .usable = usable,

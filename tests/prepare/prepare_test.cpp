@@ -333,6 +333,7 @@ TEST_F(PrepareTest, ASimulatedSurveyKeepsItsFrameAndItsTruth) {
   fs::create_directories(folder_ / "truth/classes");
   fs::create_directories(folder_ / "truth/masks");
   image::SavePng(image::Image8(64, 48, 1, 255), folder_ / "truth/masks/photo_02.jpg.png");
+  base::WriteFileAtomically(folder_ / "truth/orthophoto.tif", "");
   base::WriteFileAtomically(folder_ / "simulate.json", R"({"origin":{"latitude_deg":47.0,"longitude_deg":8.0,"height_m":400.0},"exact_frame":true})");
   const survey::Survey survey = Prepare({folder_.path(), {}, folder_ / "out"}, options_, threads_);
   EXPECT_EQ(survey.origin.latitude_deg, 47.0);
@@ -343,6 +344,9 @@ TEST_F(PrepareTest, ASimulatedSurveyKeepsItsFrameAndItsTruth) {
   ASSERT_TRUE(survey.truth);
   EXPECT_EQ(survey.truth->depth_folder, folder_ / "truth/depth");
   EXPECT_EQ(survey.truth->classes_folder, folder_ / "truth/classes");
+  EXPECT_EQ(survey.truth->masks_folder, folder_ / "truth/masks");
+  EXPECT_EQ(survey.truth->ortho_tif, folder_ / "truth/orthophoto.tif");
+  EXPECT_TRUE(survey.truth->edge_targets_json.empty());
   EXPECT_TRUE(survey.truth->normals_folder.empty());  // a survey made before there were any
   EXPECT_TRUE(survey.photos[2].mask.empty());
   EXPECT_EQ(survey.photo_root, folder_ / "images");

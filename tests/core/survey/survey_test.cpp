@@ -69,7 +69,8 @@ Survey SmallSurvey() {
                 .adjusted_to_tags = true};
   survey.checks = {.speed_mps = 8.0, .speed_source = "speed tags", .camera_name = "DJI FC300S", .smear_px = 2.0, .k1 = -0.02};
   survey.problems = {{.code = "tags_disagree", .finding = "half of the tags disagree", .advice = "look", .about_place = true}};
-  survey.truth = Truth{"/t/depth", "/t/buildings.json", "/t/exposure.json", "/t/normals", "/t/classes", "/t/surface.ply"};
+  survey.truth = Truth{"/t/depth",       "/t/buildings.json", "/t/exposure.json",  "/t/normals",          "/t/classes",
+                       "/t/surface.ply", "/t/masks",          "/t/orthophoto.tif", "/t/edge_targets.json"};
   return survey;
 }
 
@@ -126,6 +127,9 @@ TEST_F(SurveyTest, SavingAndLoadingKeepsEveryBit) {
   EXPECT_EQ(after.truth->normals_folder, before.truth->normals_folder);
   EXPECT_EQ(after.truth->classes_folder, before.truth->classes_folder);
   EXPECT_EQ(after.truth->surface_ply, before.truth->surface_ply);
+  EXPECT_EQ(after.truth->masks_folder, before.truth->masks_folder);
+  EXPECT_EQ(after.truth->ortho_tif, before.truth->ortho_tif);
+  EXPECT_EQ(after.truth->edge_targets_json, before.truth->edge_targets_json);
 }
 
 // As earlier versions wrote it.
@@ -154,7 +158,8 @@ TEST_F(SurveyTest, KeepsWhetherHeldOutPhotosWereResected) {
 TEST_F(SurveyTest, ATruthWithoutNormalsAndClassesIsLoaded) {
   SaveSurvey(SmallSurvey(), folder_.path());
   nlohmann::json json = base::ParseJson(base::ReadFile(folder_ / "survey.json"));
-  for (const char* key : {"normals_folder", "classes_folder", "surface_ply"}) ASSERT_EQ(json["truth"].erase(key), 1U) << key;
+  for (const char* key : {"normals_folder", "classes_folder", "surface_ply", "masks_folder", "ortho_tif", "edge_targets_json"})
+    ASSERT_EQ(json["truth"].erase(key), 1U) << key;
   base::WriteFileAtomically(folder_ / "survey.json", base::JsonText(json));
   const Survey survey = LoadSurvey(folder_.path());
   ASSERT_TRUE(survey.truth);
@@ -162,6 +167,9 @@ TEST_F(SurveyTest, ATruthWithoutNormalsAndClassesIsLoaded) {
   EXPECT_TRUE(survey.truth->normals_folder.empty());
   EXPECT_TRUE(survey.truth->classes_folder.empty());
   EXPECT_TRUE(survey.truth->surface_ply.empty());
+  EXPECT_TRUE(survey.truth->masks_folder.empty());
+  EXPECT_TRUE(survey.truth->ortho_tif.empty());
+  EXPECT_TRUE(survey.truth->edge_targets_json.empty());
 }
 
 TEST_F(SurveyTest, MedianAglIgnoresUnknownOnes) {

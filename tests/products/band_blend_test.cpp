@@ -135,16 +135,16 @@ TEST(BandBlender, DoesNotMixDetail) {
 }
 
 RC_GTEST_PROP(BandBlender, BlendsAPartAsItDoesTheWhole, ()) {
-  const int width = 171;
-  const int height = 150;
+  const int width = 131;
+  const int height = 121;
   const int levels = 3;
   const uint32_t seed = *rc::gen::arbitrary<uint32_t>();
   const image::ImageF below = NoisePicture(width, height, seed);
   const image::ImageF above = NoisePicture(width, height, seed + 1);
-  const int begin_x = *rc::gen::inRange(0, 120);
-  const int begin_y = *rc::gen::inRange(0, 100);
-  const int end_x = std::min(begin_x + *rc::gen::inRange(1, 60), width);
-  const int end_y = std::min(begin_y + *rc::gen::inRange(1, 60), height);
+  const int begin_x = *rc::gen::inRange(0, 90);
+  const int begin_y = *rc::gen::inRange(0, 80);
+  const int end_x = std::min(begin_x + *rc::gen::inRange(1, 40), width);
+  const int end_y = std::min(begin_y + *rc::gen::inRange(1, 40), height);
   std::vector<float> mask(below.data.size() / 3, 0.0F);
   for (int y = begin_y; y < end_y; ++y) std::fill_n(mask.begin() + y * width + begin_x, end_x - begin_x, 1.0F);
 

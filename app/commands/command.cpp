@@ -19,7 +19,7 @@ namespace {
 
 // The options set by --config: those of a file, or of a preset. When a file and a preset have this name, the file is used.
 struct NamedConfig {
-  bool is_preset = false;
+  bool keeps_views = false;  // says itself what holds for photos that look level: "default" and "level"
   bool starts_anew = false;  // "default" replaces all values of the project's own configuration
   std::vector<std::filesystem::path> files;
   std::vector<config::Override> overrides;
@@ -35,7 +35,10 @@ NamedConfig FindConfig(const std::string& config) {
     throw base::InputError(config, "no such file, and no preset of that name",
                            nearest.empty() ? "Give a TOML file, or one of " + base::Join(presets) : "Did you mean '" + nearest + "'?");
   }
-  return {.is_preset = true, .starts_anew = config == "default", .files = {}, .overrides = PresetOverrides(config)};
+  return {.keeps_views = config == "default" || config == kLevelPreset,
+          .starts_anew = config == "default",
+          .files = {},
+          .overrides = PresetOverrides(config)};
 }
 
 // What comes after files: the preset, --set, `flags` and --threads. Later ones win.
@@ -71,7 +74,7 @@ coordinator::Settings CommandState::LoadOver(coordinator::Settings settings) con
 
 std::optional<coordinator::Settings> CommandState::LoadForLevelPhotos(const std::vector<config::Override>& flags) const {
   const NamedConfig named = FindConfig(config);
-  if (named.is_preset) return std::nullopt;
+  if (named.keeps_views) return std::nullopt;
   coordinator::Settings settings;
   for (const config::Override& entry : PresetOverrides(kLevelPreset)) settings.Set(entry);
   // What these say about old options was said by Load.

@@ -35,7 +35,8 @@ struct CommandState {
   // The given settings, changed by --config, --set and --threads.
   coordinator::Settings LoadOver(coordinator::Settings settings) const;
   // What Load({}, flags) gives if the photos look level (Pipeline::level_settings): with the preset "level" below all else that is given. Not
-  // checked, as most photos do not; none when --config names a preset.
+  // checked, as most photos do not; none when --config names the preset
+  // "default" or "level".
   std::optional<coordinator::Settings> LoadForLevelPhotos(const std::vector<config::Override>& flags) const;
   // The pipeline of a project. From here on, log lines are also written to the project's log.txt.
   coordinator::Pipeline Begin(const coordinator::Project& project, coordinator::Settings settings, bool restart) const;

@@ -8,7 +8,9 @@ const char* const kCoverageDefinition =
     "Coverage: covered pixels divided by the pixels that the photo's mask does not exclude. The surface point of a pixel is where its rendered ray "
     "becomes half opaque, moved along the ray into the height range of the blocks, so that neither floaters nor holes change what counts. The pixel "
     "is covered when this point lies inside the blocks and inside the unmasked frame of at least two training photos. Whether something hides the "
-    "point from these photos is not tested.";
+    "point from these photos is not tested. Where photos look level, sky is not covered: rays above all sparse points on their side that meet "
+    "nothing "
+    "within the heights.";
 const char* const kPsnrDefinition =
     "PSNR, SSIM and FLIP: computed per held-out photo over its covered pixels in sRGB display values, then averaged over the photos. Full frame: the "
     "same over every pixel that no mask excludes. PSNR of a block: from the squared errors of all covered pixels of all held-out photos whose "

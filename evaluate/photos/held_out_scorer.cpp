@@ -7,17 +7,19 @@
 #include <span>
 
 #include "core/base/log.h"
+#include "core/survey/view_kind.h"
 #include "evaluate/photos/load_held_out_photo.h"
 
 namespace skyquilt::evaluate::photos {
 
 namespace {
 
-SceneArea AreaOf(const scene::SceneInfo& info) {
+SceneArea AreaOf(const scene::SceneInfo& info, const survey::Survey& survey) {
   SceneArea area;
   for (const scene::SceneBlock& block : info.blocks) area.boxes.push_back({block.min_enu, block.max_enu, block.margin_m});
   if (area.boxes.empty()) area.boxes.push_back({info.min_enu, info.max_enu, 0.0});
   area.heights = {info.min_enu.z(), info.max_enu.z()};
+  if (survey::LooksLevel(survey)) area.points = survey.points;
   return area;
 }
 
@@ -50,7 +52,7 @@ double LpipsOf(skyquilt::metrics::Lpips& network, const HeldOutPhoto& task, cons
 }  // namespace
 
 HeldOutScorer::HeldOutScorer(const EvaluateInput& input)
-    : input_(input), area_(AreaOf(input.scene->info())), training_(ViewsOf(input)), views_(training_) {
+    : input_(input), area_(AreaOf(input.scene->info(), *input.survey)), training_(ViewsOf(input)), views_(training_) {
   if (input.options.field_normals && !input.scene->info().density_normals) {
     base::LogWarning(
         "The scene's encoding has no normals of the density, so they are not scored. evaluate.field_normals needs \"hash\" or \"voxels\"");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "core/base/errors.h"
 #include "core/metrics/depth_errors.h"
@@ -12,6 +13,7 @@
 #include "core/metrics/ssim.h"
 #include "core/scene/depth_normals.h"
 #include "evaluate/photos/apply_response.h"
+#include "evaluate/photos/skyline.h"
 
 namespace skyquilt::evaluate::photos {
 
@@ -49,7 +51,9 @@ class FrameComparison {
         area_(area),
         enu_from_cam_(task.cam_from_enu.Inverse()),
         origin_(task.cam_from_enu.OriginInSource()),
-        order_(views.ByDistance(origin_)) {}
+        order_(views.ByDistance(origin_)) {
+    if (!area.points.empty()) skyline_.emplace(area.points, origin_);
+  }
 
   // Fills the images below and returns the sums over all pixels, the same for any number of threads.
   PixelSums Compare(base::ThreadPool& threads) {
@@ -85,12 +89,20 @@ class FrameComparison {
     if (!task_.mask.empty() && task_.mask[i] == 0) return;
     ++sums->used;
     AddPixel(rgb, photo.At(x, y), &sums->full);
-    const auto surface = SurfacePoint(origin_, enu_from_cam_.rotation * direction_in_cam, median_m, area_.heights);
+    const Eigen::Vector3d direction = enu_from_cam_.rotation * direction_in_cam;
+    if (ShowsSky(direction, median_m)) return;
+    const auto surface = SurfacePoint(origin_, direction, median_m, area_.heights);
     if (!surface) return;
     const int block = BlockAt(*surface, area_.boxes);
     if (block < 0 || views_.Count(*surface, order_, 2) < 2) return;
     scored.data[i] = 1;
     AddCovered(x, y, block, ZoneAt(*surface, block, area_.boxes), sums);
+  }
+
+  // False for a ray that meets something within the heights, even where that is wrong.
+  bool ShowsSky(const Eigen::Vector3d& direction, double depth_m) const {
+    if (!skyline_ || origin_.z() + depth_m * direction.z() <= area_.heights.high_m) return false;  // NaN: met nothing
+    return skyline_->IsAbove(direction);
   }
 
   void AddCovered(int x, int y, int block, Zone zone, PixelSums* sums) const {
@@ -109,6 +121,7 @@ class FrameComparison {
   const geo::Rigid3d enu_from_cam_;
   const Eigen::Vector3d origin_;
   const std::vector<int> order_;
+  std::optional<Skyline> skyline_;  // where photos look level
 };
 
 // Nearest pixel, because averaging would give wrong depths between roof and ground.

@@ -11,6 +11,7 @@
 #include "core/geo/transform.h"
 #include "core/image/image.h"
 #include "core/scene/scene.h"
+#include "core/survey/survey.h"
 #include "evaluate/photos/coverage.h"
 #include "evaluate/photos/photo_score.h"
 #include "evaluate/photos/pixel_groups.h"
@@ -34,6 +35,9 @@ struct HeldOutPhoto {
 struct SceneArea {
   std::vector<geo::BlockBox> boxes;  // of the blocks
   HeightRange heights;               // of the whole scene
+  // Of the survey: rays above them that meet nothing below the highest of the heights show the sky, which is not covered. Empty where photos look
+  // down.
+  std::span<const survey::SparsePoint> points = {};
 };
 
 struct PhotoResult {

@@ -66,11 +66,29 @@ Lookup DepthAt(const ViewCamera& view, float u, float v, float nearest, float fr
   return {(1.0F - ay) * (d00 + ax * (d10 - d00)) + ay * (d01 + ax * (d11 - d01)), true};
 }
 
+// Whether the rays through the four pixels around an image position meet nothing. Beside an outline half a pixel may be wrong, so all of them must.
+bool IsFree(const ViewCamera& view, float u, float v) {
+  const int x = static_cast<int>(u + 0.5F) - 1;
+  const int y = static_cast<int>(v + 0.5F) - 1;
+  if (x < 0 || y < 0 || x + 1 >= view.width || y + 1 >= view.height) return false;
+  const size_t upper = static_cast<size_t>(y) * static_cast<size_t>(view.width) + static_cast<size_t>(x);
+  const size_t lower = upper + static_cast<size_t>(view.width);
+  const auto is_free = [&view](size_t pixel) { return view.cosine[pixel] == kMeetsNothing && !IsDepth(view.depth_m[pixel]); };
+  return is_free(upper) && is_free(upper + 1) && is_free(lower) && is_free(lower + 1);
+}
+
 // Adds what the view knows about a node at image position (u, v) and the square of its distance to the camera.
 void AddToNode(const ViewCamera& view, float u, float v, float distance2, const Weighting& weighting, const BrickSums& sums, size_t node) {
   const size_t pixel = static_cast<size_t>(static_cast<int>(v)) * static_cast<size_t>(view.width) + static_cast<size_t>(static_cast<int>(u));
   const float nearest = view.depth_m[pixel];
-  if (!IsDepth(nearest)) return;
+  if (!IsDepth(nearest)) {
+    // As before a surface that the ray meets at right angles.
+    if (!IsFree(view, u, v)) return;
+    const float weight = weighting.area / distance2;
+    sums.psi[node] += weight;
+    sums.weight[node] += weight;
+    return;
+  }
   const float truncation = weighting.truncation_m;
   const float distance = std::sqrt(distance2);
   const float cosine = std::max(static_cast<float>(view.cosine[pixel]) * kCosineUnit, weighting.lowest_cosine);

@@ -12,6 +12,7 @@ namespace skyquilt::surface {
 
 struct DepthLimits {
   double min_opacity = 0.5;
+  double max_free_opacity = -1.0;    // of rays that meet nothing; negative: no ray is known to
   double max_spread_m = 0.0;         // between front and back of the surface along the ray
   double max_step_m = 0.0;           // to the neighbouring pixels on both sides
   double max_angle_deg = 80.0;       // between ray and surface normal

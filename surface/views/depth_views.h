@@ -37,11 +37,14 @@ struct ViewPose {
   }
 };
 
+// As the cosine of a pixel without depth: its ray meets nothing at all where the scene has surface.
+constexpr uint8_t kMeetsNothing = 255;
+
 // One picture, row-major.
 struct DepthView {
   ViewPose pose;
   std::span<const float> depth_m;   // median depth along the ray through the pixel's centre, metres; NaN: none, or not trusted
-  std::span<const uint8_t> cosine;  // 255 times the cosine of the angle between ray and surface normal; 0 where there is no depth
+  std::span<const uint8_t> cosine;  // 255 times the cosine of the angle between ray and surface normal; 0 or kMeetsNothing where there is no depth
 };
 
 class DepthViews {

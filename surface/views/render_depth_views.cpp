@@ -31,7 +31,7 @@ int64_t RaysOf(std::span<const ViewPose> poses) {
 }
 
 // Of everything that the pictures depend on, so that those of other options or of another scene are not taken for these.
-std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double voxel_m, bool level) {
+std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double voxel_m) {
   std::string text;
   const auto add = [&text](const auto& value) {
     static_assert(std::is_arithmetic_v<std::decay_t<decltype(value)>>);
@@ -52,7 +52,7 @@ std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double v
   add(input.info->parameters);
   text.append(input.info->config);
   for (const ViewPose& pose : places.training) add_pose(pose);
-  if (level) add(level);
+  if (const double free_opacity = LimitsOf(input, voxel_m).max_free_opacity; free_opacity >= 0.0) add(free_opacity);
   return base::HashHex(text);
 }
 
@@ -131,7 +131,7 @@ void Report(const DepthViewRenderer& renderer, size_t photos) {
 DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::ThreadPool& threads) {
   const PhotoPlaces places = PlacesOfPhotos(input);
   const bool level = survey::LooksLevel(*input.survey);
-  const std::string key = KeyOf(input, places, voxel_m, level);
+  const std::string key = KeyOf(input, places, voxel_m);
   const std::filesystem::path folder = input.work_folder / "views", joined = input.work_folder / "views.bin";
   std::error_code ignored;
   if (std::optional<DepthViews> finished = OpenFinished(joined, key)) {

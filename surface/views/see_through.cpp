@@ -20,6 +20,7 @@ bool SeesThrough(std::span<const DepthView> views, const Eigen::Vector3d& x_in_e
     const double distance_m = ray.norm(), cosine = std::abs(ray.dot(normal_enu)) / distance_m;
     if (!(cosine >= least_cosine)) continue;
     const size_t pixel = static_cast<size_t>(at->y()) * static_cast<size_t>(view.pose.width) + static_cast<size_t>(at->x());
+    if (std::isnan(view.depth_m[pixel]) && view.cosine[pixel] == kMeetsNothing) return true;
     // Of the place's own surface, the pixel's centre may show a part that is farther by this, measured along the normal.
     const double slack_m = kFarthestPx * distance_m / view.pose.focal_px * std::sqrt(1.0 - std::min(1.0, cosine * cosine));
     // False for NaN: no depth is known.

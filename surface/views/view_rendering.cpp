@@ -6,6 +6,7 @@
 
 #include "core/base/cancel.h"
 #include "core/geo/ray_box.h"
+#include "core/survey/view_kind.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr int64_t kBatchRays = 1 << 16;
 constexpr int64_t kRaysPerTask = 4096;
 constexpr double kMaxStepVoxels = 4.0;
+constexpr double kFreeOpacity = 0.05;  // rays of level photos with at most this opacity meet nothing
 
 // The part of the ray through a pixel that may show a surface; empty when t_far is 0.
 render::Ray RayThrough(const ViewPose& pose, const Eigen::Vector3d& centre, int64_t pixel, const DepthLimits& limits) {
@@ -35,6 +37,8 @@ DepthLimits LimitsOf(const SurfaceInput& input, double voxel_m) {
   const SurfaceOptions& options = input.options;
   const SurfaceBox box = SurfaceBoxOf(*input.info);
   return {.min_opacity = options.min_opacity,
+          // From above every ray ends on the ground, and one that does not met a hole of the field.
+          .max_free_opacity = survey::LooksLevel(*input.survey) ? kFreeOpacity : -1.0,
           .max_spread_m = options.max_spread_voxels * voxel_m,
           .max_step_m = kMaxStepVoxels * voxel_m,
           .max_angle_deg = kMaxAngle_deg,
@@ -50,7 +54,7 @@ RenderedView RenderView(const ViewPose& pose, const RayCaster& caster, const Dep
   view.depth_m.assign(static_cast<size_t>(n_pixels), std::numeric_limits<float>::quiet_NaN());
   const Eigen::Vector3d centre = pose.Centre();
   std::vector<render::Ray> candidates, rays;
-  std::vector<size_t> pixel_of;
+  std::vector<size_t> pixel_of, free_pixels;
   std::vector<render::RayColor> colors;
   for (int64_t first = 0; first < n_pixels; first += kBatchRays) {
     base::ThrowIfCancelled();
@@ -72,10 +76,14 @@ RenderedView RenderView(const ViewPose& pose, const RayCaster& caster, const Dep
       colors.assign(rays.size(), {});
       caster(rays, colors);
     }
-    for (size_t i = 0; i < rays.size(); ++i) view.depth_m[pixel_of[i]] = TrustedDepth(rays[i], colors[i], limits);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      view.depth_m[pixel_of[i]] = TrustedDepth(rays[i], colors[i], limits);
+      if (static_cast<double>(colors[i].opacity) <= limits.max_free_opacity) free_pixels.push_back(pixel_of[i]);
+    }
     on_pixels(count);
   }
   FilterDepths(view, limits, threads);
+  for (const size_t pixel : free_pixels) view.cosine[pixel] = kMeetsNothing;
   return view;
 }
 

@@ -103,9 +103,21 @@ TEST(CommandLine, LevelPhotosGetAPresetBelowAllThatIsGiven) {
   state.set = {"products.video_path=flyover"};
   EXPECT_EQ(path({}), "flyover");
   EXPECT_EQ(path({{"products.video_path", "orbit"}}), "orbit");
-  for (const std::string& name : PresetNames()) {
+  state.set.clear();
+  for (const std::string name : {"default", kLevelPreset}) {
     state.config = name;
     EXPECT_FALSE(state.LoadForLevelPhotos({})) << name;
+  }
+  for (const std::string name : {"fast", "quality"}) {
+    state.config = name;
+    const std::optional<coordinator::Settings> both = state.LoadForLevelPhotos({});
+    ASSERT_TRUE(both) << name;
+    const coordinator::FlatOptions flat = both->Flat();
+    for (const config::Override& entry : PresetOverrides(name)) EXPECT_EQ(flat.at(entry.key), entry.value) << name;
+    EXPECT_EQ(both->priors.points, preset.priors.points) << name;
+    EXPECT_EQ(both->priors.free_space, preset.priors.free_space) << name;
+    EXPECT_EQ(both->products.video_path, "cameras") << name;
+    EXPECT_NO_THROW(both->Check()) << name;
   }
 }
 
@@ -125,6 +137,9 @@ TEST(CommandLine, PrepareChoosesThePresetOfLevelPhotosForLaterCommands) {
     return LoadSettings({folder.path() / name / "config.toml"}, {});
   };
   EXPECT_EQ(prepared("chosen", {}, true).Flat(), CommandState().LoadForLevelPhotos({})->Flat());
+  const coordinator::Settings fast = prepared("fast", {"--config", "fast"}, true);
+  EXPECT_EQ(fast.train.levels, 6);
+  EXPECT_EQ(fast.priors.points, prepared("chosen", {}, false).priors.points);
   EXPECT_EQ(prepared("not", {"--config", "default"}, false).Flat(), coordinator::Settings().Flat());
   const coordinator::Settings own = prepared("own", {"--set", "products.video_seconds=6"}, true);
   EXPECT_EQ(own.products.video_seconds, 6.0);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -97,6 +98,50 @@ TEST_F(ScorePhotoTest, HolesOverPhotographedGroundStillCount) {
   const PhotoResult findings = ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads);
   EXPECT_GT(findings.score.Coverage(), 0.9);
   EXPECT_NEAR(findings.score.psnr_full_db, Psnr(100.0), 1e-3);
+}
+
+// A camera that looks level to the north, 10 m above the ground: rows above the middle rise.
+class ScoreLevelPhoto : public ::testing::Test {
+ protected:
+  ScoreLevelPhoto() {
+    task_.camera = NadirView(0, 0, 0).camera;
+    Eigen::Matrix3d rotation;
+    rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+    task_.cam_from_enu = {Eigen::Quaterniond(rotation), -(rotation * Eigen::Vector3d(0, 0, 10))};
+    task_.photo = image::Image8(kScoredWidth, kScoredHeight, 3, 100);
+    rendered_.resize(static_cast<size_t>(kScoredWidth) * kScoredHeight);
+    for (render::RayColor& ray : rendered_) ray.depth = ray.depth_median = std::numeric_limits<float>::quiet_NaN();
+  }
+  // How many pixels of the upper half are covered.
+  int64_t CoveredAbove() {
+    const TrainingView view{task_.camera, task_.cam_from_enu, {}};
+    const PhotoResult findings = ScorePhoto(task_, rendered_, TrainingViews({view, view}), area_, threads_);
+    return std::count(findings.scored.data.begin(), findings.scored.data.begin() + kScoredWidth * kScoredHeight / 2, 1);
+  }
+
+  HeldOutPhoto task_;
+  std::vector<render::RayColor> rendered_;
+  SceneArea area_{{{{-5000, -5000, 0}, {5000, 5000, 20}, 5.0}}, {0.0, 20.0}};
+  base::ThreadPool threads_{2};
+};
+
+TEST_F(ScoreLevelPhoto, SkyIsNotCoveredButHolesInWallsAre) {
+  EXPECT_EQ(CoveredAbove(), kScoredWidth * kScoredHeight / 2) << "all rays pass below the upper end of the heights within the block";
+  // A wall 100 m to the north, 60 m wide and 25 m high, of points: 30 columns to both sides of the middle, 15 rows above it.
+  std::vector<survey::SparsePoint> wall;
+  for (int x = -30; x <= 30; ++x) {
+    for (int z = 0; z <= 25; ++z) wall.push_back({.x_in_enu = Eigen::Vector3d(x, 100.0, z)});
+  }
+  area_.points = wall;
+  const int64_t behind_points = CoveredAbove();
+  EXPECT_GE(behind_points, 60 * 15) << "a hole in the wall counts";
+  EXPECT_LE(behind_points, 70 * 16) << "the sky above and beside it does not";
+  // What is rendered there counts, wrong or not.
+  render::RayColor& matter = rendered_[5 * kScoredWidth + 50];
+  matter.depth = matter.depth_median = 12.0F;
+  EXPECT_EQ(CoveredAbove(), behind_points + 1);
+  matter.depth = matter.depth_median = 1000.0F;
+  EXPECT_EQ(CoveredAbove(), behind_points) << "behind the upper end of the heights";
 }
 
 TEST_F(ScorePhotoTest, DepthIsComparedAlongTheOpticalAxis) {

@@ -139,6 +139,29 @@ TEST(FusePiece, DropsWhatTooFewPhotosSaw) {
   EXPECT_EQ(*std::max_element(mesh.views.begin(), mesh.views.end()), 6);
 }
 
+TEST(FusePiece, RaysThatMeetNothingDropWhatStandsInTheirWay) {
+  base::ThreadPool threads(1);
+  // Three pictures show a plane, five others nothing, or they do not know.
+  const auto fused = [&threads](uint8_t cosine) {
+    test::Pictures pictures = PlaneSeenBy(8, 0, 8);
+    for (size_t i = 3; i < 8; ++i) {
+      for (size_t pixel = 0; pixel < 64 * 64; ++pixel) {
+        if (pixel % 64 < 32) continue;
+        pictures.depth_m[i][pixel] = std::numeric_limits<float>::quiet_NaN();
+        pictures.cosine[i][pixel] = cosine;
+      }
+    }
+    return FusePiece(pictures.views, Cube(16), BallOptions(), threads);
+  };
+  EXPECT_GT(ReachToTheRight(fused(0)), 7.0);
+  const Mesh open = fused(kMeetsNothing);
+  EXPECT_LT(ReachToTheRight(open), 2.0);
+  ASSERT_FALSE(open.triangle.empty()) << "the other half stays";
+  for (const Eigen::Vector3d& x : open.position) {
+    if (x.y() > 1.0) EXPECT_NEAR(x.z(), 0.1, 0.05);
+  }
+}
+
 TEST(FusePiece, NothingFromNothing) {
   base::ThreadPool threads(2);
   EXPECT_TRUE(FusePiece(std::span<const DepthView>(), Cube(16), BallOptions(), threads).position.empty());

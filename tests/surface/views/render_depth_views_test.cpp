@@ -198,6 +198,33 @@ TEST_F(RenderViews, ASurveyWithoutPhotosHasNoViews) {
   EXPECT_EQ(Render(survey_).size(), 0U);
 }
 
+TEST_F(RenderViews, RaysOfLevelPhotosThatMeetNothingAreMarked) {
+  for (survey::Photo& photo : survey_.survey.photos) photo.cam_from_enu = LookingLevel({photo.cam_from_enu.OriginInSource().x(), -60.0, 4.0}, 0.0);
+  // The roof is seen too badly for a depth, but is not nothing.
+  survey_.scene.change = [](const Eigen::Vector3d& x, render::RayColor& color) {
+    if (x.z() > 6.0) color.opacity = 0.3F;
+  };
+  const DepthViews views = Render(survey_);
+  ASSERT_GE(views.size(), 8U);
+  int64_t n_free = 0, n_unknown = 0;
+  const DepthView view = views[0];
+  for (size_t i = 0; i < view.depth_m.size(); ++i) {
+    const auto width = static_cast<size_t>(view.pose.width);
+    const Eigen::Vector3d d = view.pose.DirectionAt(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
+    const double depth_m = survey_.scene.Depth(view.pose.Centre(), d);
+    const bool free = std::isnan(view.depth_m[i]) && view.cosine[i] == kMeetsNothing;
+    if (!(depth_m < 1000.0)) {
+      EXPECT_TRUE(free) << i << ": what is beyond the scene's box is nothing too";
+    } else if (depth_m < 400.0) {
+      EXPECT_FALSE(free) << i;
+    }
+    n_free += free ? 1 : 0;
+    n_unknown += std::isnan(view.depth_m[i]) && view.cosine[i] == 0 ? 1 : 0;
+  }
+  EXPECT_GT(n_free, 100);
+  EXPECT_GT(n_unknown, 0);
+}
+
 TEST_F(RenderViews, AnEmptySceneGivesViewsWithoutDepth) {
   survey_.input.caster = [](std::span<const render::Ray>, std::span<render::RayColor>) {};
   const DepthViews views = Render(survey_);

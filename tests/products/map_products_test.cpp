@@ -373,6 +373,15 @@ TEST_F(MapProductsTest, TooManyCellsAreRefusedOrCoarsened) {
   options.resolution_m = 0.25;
   const std::string error = UsageErrorOf([&] { PlanMapGrid(info, options); });
   EXPECT_NE(error.find("set it to at least 1.0"), std::string::npos) << error;
+  // By default automatic maps of the scene have fewer cells than requested ones may have.
+  options = {};
+  scene::SceneInfo fine = info;
+  fine.gsd_m = 0.01;
+  const gis::MapGrid automatic = PlanMapGrid(fine, options);
+  EXPECT_LE(static_cast<double>(automatic.width) * automatic.height, kMostRenderedCells);
+  EXPECT_DOUBLE_EQ(automatic.resolution_m, 0.02);
+  options.resolution_m = 0.01;
+  EXPECT_DOUBLE_EQ(PlanMapGrid(fine, options).resolution_m, 0.01);
   options.resolution_m = -1.0;
   EXPECT_THROW(PlanMapGrid(info, options), base::UsageError);
   options.resolution_m = std::numeric_limits<double>::quiet_NaN();

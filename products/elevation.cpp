@@ -87,17 +87,18 @@ void SetResolution(const scene::SceneInfo& info, const survey::Survey* survey, c
     plane->resolution_m = NiceResolution(found.empty() ? otherwise : base::Median(found));
   }
   const auto pixels = [&](double resolution) { return std::ceil(plane->width_m / resolution) * std::ceil(plane->height_m / resolution); };
-  if (!(pixels(plane->resolution_m) > options.max_pixels)) return;
+  const double most = automatic ? options.MostAutomaticCells() : options.max_pixels;
+  if (!(pixels(plane->resolution_m) > most)) return;
   double fits = plane->resolution_m;
-  while (pixels(fits) > options.max_pixels) fits = NiceResolution(1.6 * fits);
+  while (pixels(fits) > most) fits = NiceResolution(1.6 * fits);
   if (!automatic) {
     throw base::UsageError(
         fmt::format("products.resolution_m = {} gives an elevation of {:.3g} million pixels, more than products.max_pixels; set it "
                     "to at least {}, or raise products.max_pixels",
                     options.resolution_m, pixels(plane->resolution_m) / 1e6, fits));
   }
-  base::LogWarning("{}: {:.3g} million pixels of {} are more than products.max_pixels; it is made with {} instead", plane->name,
-                   pixels(plane->resolution_m) / 1e6, plane->resolution_m, fits);
+  base::LogInfo("{}: made with {} per pixel, because {} would give {:.3g} million pixels; set products.resolution_m for finer ones", plane->name,
+                fits, plane->resolution_m, pixels(plane->resolution_m) / 1e6);
   plane->resolution_m = fits;
 }
 

@@ -36,19 +36,19 @@ gis::MapGrid PlanMapGrid(const scene::SceneInfo& info, const ProductOptions& opt
   const bool automatic = options.resolution_m <= 0.0;
   const double gsd_m = info.gsd_m > 0.0 ? info.gsd_m : (extent.high - extent.low).maxCoeff() / 1000.0;
   grid.resolution_m = automatic ? NiceResolution(gsd_m) : options.resolution_m;
-  double cells = extent.CellCounts(grid.resolution_m).prod();
-  if (cells > options.max_pixels) {
+  const double most = automatic ? options.MostAutomaticCells() : options.max_pixels;
+  const double cells = extent.CellCounts(grid.resolution_m).prod();
+  if (cells > most) {
     double fits = grid.resolution_m;
-    while (extent.CellCounts(fits).prod() > options.max_pixels) fits = NiceResolution(1.6 * fits);
+    while (extent.CellCounts(fits).prod() > most) fits = NiceResolution(1.6 * fits);
     if (!automatic) {
       throw base::UsageError("products.resolution_m = " + std::to_string(grid.resolution_m) + " gives a map of " + std::to_string(cells / 1e6) +
                              " million cells, more than products.max_pixels = " + std::to_string(options.max_pixels / 1e6) +
                              " million; set it to at least " + std::to_string(fits) + " m, or raise products.max_pixels");
     }
-    base::LogWarning(
-        "maps with {} m per cell would have {:.3g} million cells, more than products.max_pixels; they are made with {} m instead. Raise "
-        "products.max_pixels for finer maps",
-        grid.resolution_m, cells / 1e6, fits);
+    base::LogInfo(
+        "maps from the scene are made with {} m per cell, because {} m would give {:.3g} million cells; set products.resolution_m for finer ones",
+        fits, grid.resolution_m, cells / 1e6);
     grid.resolution_m = fits;
   }
   extent.SetCells(grid.resolution_m, &grid);

@@ -14,8 +14,8 @@ namespace skyquilt::products {
 // The nearest value 1, 2 or 5 times a power of ten, by ratio.
 double NiceResolution(double metres);
 
-// A map grid that covers the scene's box. If it has more than options.max_pixels cells, an automatic resolution is made coarser, with a warning; a
-// requested one throws base::UsageError with a resolution that fits.
+// A map grid that covers the scene's box. An automatic resolution is made coarser, with a line in the log, until the grid has at most
+// kMostRenderedCells (and options.max_pixels) cells; a requested one with more than options.max_pixels throws base::UsageError with one that fits.
 gis::MapGrid PlanMapGrid(const scene::SceneInfo& info, const ProductOptions& options);
 
 // Rays of one map row, one per cell inside the scene's box. A ray begins at the top of the blocks at this cell and ends at their bottom.

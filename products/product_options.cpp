@@ -19,11 +19,13 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
       {"preview", &O::preview, Range(),
        "make previews of the orthophoto until it is there: from the sparse points after prepare, and from the context after its training"},
       {"resolution_m", &O::resolution_m, Range{0, 1e5}, "metres per cell of orthophoto and surface model; 0: the ground sampling distance, rounded"},
-      {"max_pixels", &O::max_pixels, Range{1, 1e11},
-       "most cells of a map; with resolution_m = 0 larger maps are made coarser, otherwise they are refused"},
+      {"max_pixels", &O::max_pixels, Range{1, 1e11}, "most cells of the orthophoto; finer requests are refused"},
       {"min_opacity", &O::min_opacity, Range{0.01, 0.99}, "map cells with a lower opacity have no data"},
       {"exposure", &O::exposure, Range(),
        "brightness of images, video and orthophoto: normal, stops above normal (-10..10), or the name of a photo whose brightness to use"},
+      {"ortho_source", &O::ortho_source, Range::OneOf({"photos", "field"}),
+       "what the orthophoto is painted from: photos: from the photos, at their resolution, where they can be read; field: from the trained scene"},
+      {"crop_m", &O::crop_m, Range{0, 10000}, "metres that are cut off the orthophoto all round, from where two photos see the ground; 0: none"},
       {"vertical", &O::vertical, Range::OneOf({"as-tagged", "ellipsoid", "egm96"}),
        "what heights of maps, surface and buildings are above: as-tagged keeps those of the survey, ellipsoid (WGS84) and egm96 convert them; 3D "
        "tiles "

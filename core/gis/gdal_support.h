@@ -9,6 +9,7 @@
 #include <ogr_spatialref.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -52,6 +53,33 @@ inline void CloseWritten(Dataset* dataset, const std::filesystem::path& file) {
   CPLErrorReset();
   dataset->reset();
   if (CPLGetLastErrorType() >= CE_Failure) FailWriting(file, "cannot be completed");
+}
+
+// The bands, and one more for the mask of colours that have one instead of an alpha band.
+inline int BandsWithMask(GDALDataset* dataset) {
+  const int bands = dataset->GetRasterCount();
+  return bands == 3 && dataset->GetRasterBand(1)->GetMaskFlags() == GMF_PER_DATASET ? 4 : bands;
+}
+
+struct CellWindow {
+  int x = 0, y = 0, columns = 0, rows = 0;
+};
+struct PixelCount {
+  int columns = 0, rows = 0;
+};
+// Reads `bands` = BandsWithMask of a window into interleaved pixels; stride: pixels from one row of `out` to the next. `extra` may be null. False:
+// see CPLGetLastErrorMsg.
+inline bool ReadBands(GDALDataset* dataset, const CellWindow& window, float* out, const PixelCount& pixels, int bands, int stride,
+                      GDALRasterIOExtraArg* extra) {
+  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
+  const int stored = std::min(bands, dataset->GetRasterCount());
+  if (dataset->RasterIO(GF_Read, window.x, window.y, window.columns, window.rows, out, pixels.columns, pixels.rows, GDT_Float32, stored, nullptr,
+                        pixel, pixel * stride, sizeof(float), extra) != CE_None) {
+    return false;
+  }
+  return stored == bands ||
+         dataset->GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Read, window.x, window.y, window.columns, window.rows, out + stored, pixels.columns,
+                                                            pixels.rows, GDT_Float32, pixel, pixel * stride, extra) == CE_None;
 }
 
 // Pixels without a value become NaN.

@@ -15,7 +15,7 @@ using internal::FailWriting;
 using internal::QuietErrors;
 
 GDALDataType TypeOf(PixelType type) {
-  return type == PixelType::kUint8 ? GDT_Byte : GDT_Float32;
+  return type == PixelType::kUint8 ? GDT_Byte : type == PixelType::kUint16 ? GDT_UInt16 : GDT_Float32;
 }
 
 // Of the plain file that the rows are written to: it is only read once more, so that fast compression is better than good compression.
@@ -35,13 +35,18 @@ CPLStringList CreationOptions(const GeoTiffSpec& spec) {
   return options;
 }
 
-CPLStringList CogOptions() {
+CPLStringList CogOptions(const GeoTiffSpec& spec) {
   CPLStringList options;
-  options.SetNameValue("COMPRESS", "DEFLATE");
-  options.SetNameValue("PREDICTOR", "YES");  // the one for the type of the values
+  if (spec.jpeg_quality > 0) {
+    options.SetNameValue("COMPRESS", "JPEG");  // YCbCr, and the alpha band becomes a mask
+    options.SetNameValue("QUALITY", std::to_string(spec.jpeg_quality).c_str());
+  } else {
+    options.SetNameValue("COMPRESS", "DEFLATE");
+    options.SetNameValue("PREDICTOR", "YES");  // the one for the type of the values
+  }
   options.SetNameValue("BLOCKSIZE", std::to_string(GeoTiffWriter::kTile).c_str());
   options.SetNameValue("OVERVIEWS", "AUTO");
-  options.SetNameValue("RESAMPLING", "AVERAGE");
+  options.SetNameValue("RESAMPLING", spec.labels ? "NEAREST" : "AVERAGE");
   options.SetNameValue("BIGTIFF", "IF_SAFER");
   options.SetNameValue("NUM_THREADS", "ALL_CPUS");  // tiles are compressed in parallel, but written in order
   return options;
@@ -68,6 +73,9 @@ struct GeoTiffWriter::Impl {
 };
 
 GeoTiffWriter::GeoTiffWriter(const std::filesystem::path& file, const GeoTiffSpec& spec) : impl_(std::make_unique<Impl>(file, spec)) {
+  const bool colours = spec.type == PixelType::kUint8 && spec.bands == 4 && !spec.nodata;
+  SKYQUILT_CHECK(spec.jpeg_quality == 0 || (spec.jpeg_quality > 0 && spec.jpeg_quality <= 100 && colours && !spec.labels),
+                 std::to_string(spec.jpeg_quality));
   const QuietErrors quiet;
   GDALRegister_GTiff();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
@@ -113,6 +121,10 @@ void GeoTiffWriter::WriteRows(int first_row, int n_rows, std::span<const uint8_t
   impl_->Write(first_row, n_rows, values.data(), values.size(), PixelType::kUint8);
 }
 
+void GeoTiffWriter::WriteRows(int first_row, int n_rows, std::span<const uint16_t> values) {
+  impl_->Write(first_row, n_rows, values.data(), values.size(), PixelType::kUint16);
+}
+
 void GeoTiffWriter::WriteRows(int first_row, int n_rows, std::span<const float> values) {
   impl_->Write(first_row, n_rows, values.data(), values.size(), PixelType::kFloat32);
 }
@@ -125,7 +137,7 @@ void GeoTiffWriter::Impl::Rearrange() {
   const Dataset source(GDALDataset::Open(plain->path().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
   if (!source) FailWriting(file, "cannot be read back");
   CPLErrorReset();
-  Dataset copy(driver->CreateCopy(cog.path().c_str(), source.get(), FALSE, CogOptions().List(), internal::ContinueUnlessCancelled, nullptr));
+  Dataset copy(driver->CreateCopy(cog.path().c_str(), source.get(), FALSE, CogOptions(spec).List(), internal::ContinueUnlessCancelled, nullptr));
   base::ThrowIfCancelled();
   if (!copy || CPLGetLastErrorType() >= CE_Failure) FailWriting(file, "cannot be completed");
   internal::CloseWritten(&copy, file);
@@ -145,17 +157,13 @@ namespace {
 // GDAL's RasterIO has means and medians, but no maximum. Reads row by row. False: see CPLGetLastErrorMsg.
 bool ReadMaximum(GDALDataset* dataset, image::ImageF* image) {
   const int cells = dataset->GetRasterXSize(), rows = dataset->GetRasterYSize(), bands = image->channels;
-  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
   image::ImageF row(cells, 1, bands);
   // The first and the last of n pixels that a cell touches.
   const auto first = [](int cell, int of_cells, int n) { return static_cast<int>(static_cast<int64_t>(cell) * n / of_cells); };
   const auto last = [](int cell, int of_cells, int n) { return static_cast<int>(((cell + int64_t{1}) * n - 1) / of_cells); };
   std::fill(image->data.begin(), image->data.end(), std::numeric_limits<float>::quiet_NaN());
   for (int y = 0; y < rows; ++y) {
-    if (dataset->RasterIO(GF_Read, 0, y, cells, 1, row.data.data(), cells, 1, GDT_Float32, bands, nullptr, pixel, pixel * cells, sizeof(float),
-                          nullptr) != CE_None) {
-      return false;
-    }
+    if (!internal::ReadBands(dataset, {0, y, cells, 1}, row.At(0, 0), {cells, 1}, bands, cells, nullptr)) return false;
     internal::ForgetNoData(dataset, &row);
     for (int x = 0; x < cells; ++x) {
       for (int v = first(y, rows, image->height); v <= last(y, rows, image->height); ++v) {
@@ -172,34 +180,60 @@ bool ReadMaximum(GDALDataset* dataset, image::ImageF* image) {
   return true;
 }
 
+// The index of the smallest overview that has at least so many pixels; -1 for the full resolution.
+int CoarsestOverview(GDALDataset* dataset, int width, int height) {
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  int best = -1, columns = dataset->GetRasterXSize();
+  for (int i = 0; i < band.GetOverviewCount(); ++i) {
+    GDALRasterBand& overview = *band.GetOverview(i);
+    if (overview.GetXSize() < width || overview.GetYSize() < height || overview.GetXSize() >= columns) continue;
+    columns = overview.GetXSize();
+    best = i;
+  }
+  return best;
+}
+
+[[noreturn]] void FailReading(const std::filesystem::path& file) {
+  throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(),
+                         "Give a GeoTIFF that 'skyquilt render' or 'skyquilt surface' wrote, or make it again");
+}
+
 }  // namespace
 
 ReducedRaster ReadReduced(const std::filesystem::path& file, int max_width, Reduction reduction) {
   const QuietErrors quiet;
   GDALRegister_GTiff();
-  const Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
-  if (!dataset)
-    throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(),
-                           "Give a GeoTIFF that 'skyquilt render' or 'skyquilt surface' wrote, or make it again");
-  const int width = std::min(max_width, dataset->GetRasterXSize());
-  const int height = std::max(1, static_cast<int>(std::lround(static_cast<double>(dataset->GetRasterYSize()) * width / dataset->GetRasterXSize())));
-  const int bands = dataset->GetRasterCount();
+  const auto open = [&](const char* const* options) {
+    Dataset dataset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, options));
+    if (!dataset) FailReading(file);
+    return dataset;
+  };
+  Dataset dataset = open(nullptr);
+  const int cells = dataset->GetRasterXSize(), rows = dataset->GetRasterYSize();
+  const int width = std::min(max_width, cells);
+  const int height = std::max(1, static_cast<int>(std::lround(static_cast<double>(rows) * width / cells)));
+  const int bands = internal::BandsWithMask(dataset.get());
   ReducedRaster reduced;
   reduced.image = image::ImageF(width, height, bands);
-  reduced.scale = static_cast<double>(dataset->GetRasterXSize()) / width;
-  reduced.scale_down = static_cast<double>(dataset->GetRasterYSize()) / height;
-  GDALRasterIOExtraArg extra;
-  INIT_RASTERIO_EXTRA_ARG(extra);
-  extra.eResampleAlg = GRIORA_Average;
-  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
-  const bool read = reduction == Reduction::kMaximum
-                        ? ReadMaximum(dataset.get(), &reduced.image)
-                        : dataset->RasterIO(GF_Read, 0, 0, dataset->GetRasterXSize(), dataset->GetRasterYSize(), reduced.image.data.data(), width,
-                                            height, GDT_Float32, bands, nullptr, pixel, pixel * width, sizeof(float), &extra) == CE_None;
-  if (!read) {
-    throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(),
-                           "Give a GeoTIFF that 'skyquilt render' or 'skyquilt surface' wrote, or make it again");
+  reduced.scale = static_cast<double>(cells) / width;
+  reduced.scale_down = static_cast<double>(rows) / height;
+  bool read = false;
+  if (reduction == Reduction::kMaximum) {
+    read = ReadMaximum(dataset.get(), &reduced.image);
+  } else {
+    if (const int level = CoarsestOverview(dataset.get(), width, height); level >= 0) {
+      CPLStringList options;
+      options.SetNameValue("OVERVIEW_LEVEL",
+                           (std::to_string(level) + "only").c_str());  // without it GDAL may take one that is up to 1.2 times too coarse
+      dataset = open(options.List());
+    }
+    GDALRasterIOExtraArg extra;
+    INIT_RASTERIO_EXTRA_ARG(extra);
+    extra.eResampleAlg = GRIORA_Average;
+    read = internal::ReadBands(dataset.get(), {0, 0, dataset->GetRasterXSize(), dataset->GetRasterYSize()}, reduced.image.data.data(),
+                               {width, height}, bands, width, &extra);
   }
+  if (!read) FailReading(file);
   internal::ForgetNoData(dataset.get(), &reduced.image);
   return reduced;
 }

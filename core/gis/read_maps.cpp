@@ -150,7 +150,7 @@ image::ImageF ReadMapPart(const std::filesystem::path& file, const Eigen::Aligne
   GDALRegister_GTiff();
   const internal::Dataset dataset = OpenToRead(file, GDAL_OF_RASTER);
   const MapGrid grid = GridOf(dataset.get(), file);
-  const int bands = dataset->GetRasterCount();
+  const int bands = internal::BandsWithMask(dataset.get());
   image::ImageF image(width, height, bands, std::numeric_limits<float>::quiet_NaN());
   const Axis x((part.min().x() - grid.left) / grid.resolution_m, (part.max().x() - grid.left) / grid.resolution_m, width, grid.width);
   const Axis y((grid.top - part.max().y()) / grid.resolution_m, (grid.top - part.min().y()) / grid.resolution_m, height, grid.height);
@@ -164,9 +164,8 @@ image::ImageF ReadMapPart(const std::filesystem::path& file, const Eigen::Aligne
   extra.dfYOff = y.from;
   extra.dfXSize = x.to - x.from;
   extra.dfYSize = y.to - y.from;
-  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
-  if (dataset->RasterIO(GF_Read, x.FirstCell(), y.FirstCell(), x.Cells(), y.Cells(), image.At(x.begin, y.begin), x.end - x.begin, y.end - y.begin,
-                        GDT_Float32, bands, nullptr, pixel, pixel * width, sizeof(float), &extra) != CE_None) {
+  if (!internal::ReadBands(dataset.get(), {x.FirstCell(), y.FirstCell(), x.Cells(), y.Cells()}, image.At(x.begin, y.begin),
+                           {x.end - x.begin, y.end - y.begin}, bands, width, &extra)) {
     throw base::InputError(file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), kMakeAgain);
   }
   internal::ForgetNoData(dataset.get(), &image);

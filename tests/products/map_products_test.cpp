@@ -329,8 +329,8 @@ TEST_F(MapProductsTest, LargeMapsHaveOverviewsAndTiles) {
   int block_width = 0;
   int block_height = 0;
   ortho.dataset()->GetRasterBand(1)->GetBlockSize(&block_width, &block_height);
-  EXPECT_EQ(block_width, 256);
-  EXPECT_EQ(block_height, 256);
+  EXPECT_EQ(block_width, 512);
+  EXPECT_EQ(block_height, 512);
   EXPECT_STREQ(ortho.dataset()->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE"), "DEFLATE");
   EXPECT_TRUE(products.dsm.empty());
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "dsm.tif"));
@@ -373,6 +373,15 @@ TEST_F(MapProductsTest, TooManyCellsAreRefusedOrCoarsened) {
   options.resolution_m = 0.25;
   const std::string error = UsageErrorOf([&] { PlanMapGrid(info, options); });
   EXPECT_NE(error.find("set it to at least 1.0"), std::string::npos) << error;
+  // By default automatic maps of the scene have fewer cells than requested ones may have.
+  options = {};
+  scene::SceneInfo fine = info;
+  fine.gsd_m = 0.01;
+  const gis::MapGrid automatic = PlanMapGrid(fine, options);
+  EXPECT_LE(static_cast<double>(automatic.width) * automatic.height, kMostRenderedCells);
+  EXPECT_DOUBLE_EQ(automatic.resolution_m, 0.05);
+  options.resolution_m = 0.01;
+  EXPECT_DOUBLE_EQ(PlanMapGrid(fine, options).resolution_m, 0.01);
   options.resolution_m = -1.0;
   EXPECT_THROW(PlanMapGrid(info, options), base::UsageError);
   options.resolution_m = std::numeric_limits<double>::quiet_NaN();

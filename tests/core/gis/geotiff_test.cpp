@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/gis/read_maps.h"
 #include "tests/core/gis/open_dataset.h"
 #include "tests/support/error_of.h"
 #include "tests/support/in_temporary_folder.h"
@@ -85,6 +88,146 @@ TEST(ReadReduced, KeepsTheHighestOfEachPixel) {
   }
 }
 
+// Red rises from left to right and green from top to bottom, in a disc; black and transparent around it.
+std::vector<uint8_t> DiscOfColours(int width, int height) {
+  std::vector<uint8_t> rgba(static_cast<size_t>(width) * static_cast<size_t>(height) * 4, 0);
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      uint8_t* const pixel = &rgba[(static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)) * 4];
+      if (std::hypot(column - 0.5 * width, row - 0.5 * height) > 0.4 * height) continue;
+      pixel[0] = static_cast<uint8_t>(200 * column / width);
+      pixel[1] = static_cast<uint8_t>(200 * row / height);
+      pixel[2] = static_cast<uint8_t>((column / 3 + row / 5) % 2 == 0 ? 80 : 90);
+      pixel[3] = 255;
+    }
+  }
+  return rgba;
+}
+
+GeoTiffSpec ColourSpec(int width, int height) {
+  GeoTiffSpec spec;
+  spec.grid = Grid(width, height);
+  spec.bands = 4;
+  return spec;
+}
+
+// Overviews are read instead of all cells, and say the same.
+TEST_F(GeoTiff, ReducedColoursAreMeansOfTheCells) {
+  constexpr int kWidth = 2050, kHeight = 1300;
+  const std::vector<uint8_t> rgba = DiscOfColours(kWidth, kHeight);
+  GeoTiffWriter writer(folder_ / "map.tif", ColourSpec(kWidth, kHeight));
+  writer.WriteRows(0, kHeight, std::span<const uint8_t>(rgba));
+  writer.Close();
+  for (const int width : {90, 205, 400, 1025}) {
+    const ReducedRaster reduced = ReadReduced(folder_ / "map.tif", width);
+    ASSERT_EQ(reduced.image.width, width);
+    ASSERT_EQ(reduced.image.channels, 4);
+    EXPECT_DOUBLE_EQ(reduced.scale, static_cast<double>(kWidth) / width);
+    double worst = 0.0;
+    for (int y = 0; y < reduced.image.height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        // Away from the border of the disc, where the cells that a pixel touches depend on the overview.
+        const double column = (x + 0.5) * reduced.scale, row = (y + 0.5) * reduced.scale_down;
+        const double from_border = std::abs(std::hypot(column - 0.5 * kWidth, row - 0.5 * kHeight) - 0.4 * kHeight);
+        if (from_border < 3.0 * reduced.scale) continue;
+        const bool inside = std::hypot(column - 0.5 * kWidth, row - 0.5 * kHeight) < 0.4 * kHeight;
+        const float* const pixel = reduced.image.At(x, y);
+        ASSERT_EQ(pixel[3], inside ? 255.0F : 0.0F) << x << ", " << y;
+        if (!inside) continue;
+        worst = std::max({worst, std::abs(static_cast<double>(pixel[0]) - (200.0 * column / kWidth - 0.5)),
+                          std::abs(static_cast<double>(pixel[1]) - (200.0 * row / kHeight - 0.5))});
+      }
+    }
+    EXPECT_LT(worst, 1.2) << width << ": whole numbers, rounded twice";
+  }
+}
+
+TEST_F(GeoTiff, LabelsKeepTheirValues) {
+  constexpr int kWidth = 1500, kHeight = 1100;
+  GeoTiffSpec spec;
+  spec.grid = Grid(kWidth, kHeight);
+  spec.type = PixelType::kUint16;
+  spec.labels = true;
+  spec.nodata = 0.0;
+  std::vector<uint16_t> labels;
+  const auto label = [](int column, int row) {
+    return static_cast<uint16_t>(row < 100 ? 0 : (column / 7 + row / 7) % 2 == 0 ? 65535 : 2 + 10 * (column / 100));
+  };
+  for (int row = 0; row < kHeight; ++row) {
+    for (int column = 0; column < kWidth; ++column) labels.push_back(label(column, row));
+  }
+  GeoTiffWriter writer(folder_ / "labels.tif", spec);
+  for (int first = 0; first < kHeight; first += GeoTiffWriter::kTile) {
+    const int rows = std::min(GeoTiffWriter::kTile, kHeight - first);
+    writer.WriteRows(first, rows, std::span<const uint16_t>(labels).subspan(static_cast<size_t>(first) * kWidth, static_cast<size_t>(rows) * kWidth));
+  }
+  writer.Close();
+  const OpenedDataset map = OpenDataset(folder_ / "labels.tif", GDAL_OF_RASTER);
+  ASSERT_NE(map, nullptr);
+  GDALRasterBand& band = *map->GetRasterBand(1);
+  EXPECT_EQ(band.GetRasterDataType(), GDT_UInt16);
+  int columns = 0, rows = 0;
+  band.GetBlockSize(&columns, &rows);
+  EXPECT_EQ(columns, 512);
+  std::vector<uint16_t> read(labels.size());
+  ASSERT_EQ(band.RasterIO(GF_Read, 0, 0, kWidth, kHeight, read.data(), kWidth, kHeight, GDT_UInt16, 0, 0, nullptr), CE_None);
+  EXPECT_TRUE(read == labels);
+  ASSERT_EQ(band.GetOverviewCount(), 2);
+  for (int i = 0; i < 2; ++i) {
+    GDALRasterBand& overview = *band.GetOverview(i);
+    const int width = overview.GetXSize(), height = overview.GetYSize();
+    std::vector<uint16_t> values(static_cast<size_t>(width) * static_cast<size_t>(height));
+    ASSERT_EQ(overview.RasterIO(GF_Read, 0, 0, width, height, values.data(), width, height, GDT_UInt16, 0, 0, nullptr), CE_None);
+    for (const uint16_t value : values) ASSERT_TRUE(value == 0 || value == 65535 || (value % 10 == 2 && value < 200)) << value;
+  }
+  const image::ImageF whole = ReadReduced(folder_ / "labels.tif", 1 << 20).image;
+  EXPECT_TRUE(std::isnan(*whole.At(5, 5)));
+  EXPECT_EQ(*whole.At(0, 105), static_cast<float>(label(0, 105)));
+}
+
+// Readers see alpha, though the file has a mask instead.
+TEST_F(GeoTiff, LossyColoursKeepTheirTransparency) {
+  constexpr int kWidth = 1400, kHeight = 1300;
+  const std::vector<uint8_t> rgba = DiscOfColours(kWidth, kHeight);
+  GeoTiffSpec spec = ColourSpec(kWidth, kHeight);
+  spec.jpeg_quality = 90;
+  GeoTiffWriter writer(folder_ / "map.tif", spec);
+  writer.WriteRows(0, kHeight, std::span<const uint8_t>(rgba));
+  writer.Close();
+  const OpenedDataset map = OpenDataset(folder_ / "map.tif", GDAL_OF_RASTER);
+  ASSERT_NE(map, nullptr);
+  EXPECT_EQ(Item(map.get(), "COMPRESSION", "IMAGE_STRUCTURE"), "YCbCr JPEG");
+  EXPECT_EQ(map->GetRasterCount(), 3);
+  const image::ImageF whole = ReadReduced(folder_ / "map.tif", kWidth).image;
+  ASSERT_EQ(whole.channels, 4);
+  double sum = 0.0;
+  size_t shown = 0;
+  for (size_t i = 0; i < rgba.size(); i += 4) {
+    ASSERT_EQ(whole.data[i + 3], static_cast<float>(rgba[i + 3]));
+    if (rgba[i + 3] == 0) continue;
+    ++shown;
+    for (size_t c = 0; c < 3; ++c) sum += std::abs(static_cast<double>(whole.data[i + c]) - rgba[i + c]);
+  }
+  EXPECT_LT(sum / (3.0 * static_cast<double>(shown)), 3.0);
+  const image::ImageF small = ReadReduced(folder_ / "map.tif", 140).image;
+  ASSERT_EQ(small.channels, 4);
+  EXPECT_EQ(small.At(2, 2)[3], 0.0F);
+  EXPECT_EQ(small.At(70, 65)[3], 255.0F);
+  EXPECT_NEAR(small.At(70, 65)[0], 100.0F, 4.0F);
+  const MapGrid grid = spec.grid;
+  const image::ImageF part = ReadMapPart(folder_ / "map.tif", {grid.CellCentre(350, 1000), grid.CellCentre(1050, 300)}, 70, 70);
+  ASSERT_EQ(part.channels, 4);
+  EXPECT_EQ(part.At(35, 35)[3], 255.0F);
+  EXPECT_NEAR(part.At(35, 35)[0], 100.0F, 4.0F);
+  EXPECT_THROW(GeoTiffWriter(folder_ / "heights.tif",
+                             [] {
+                               GeoTiffSpec heights = HeightSpec(10, 10);
+                               heights.jpeg_quality = 90;
+                               return heights;
+                             }()),
+               std::logic_error);
+}
+
 TEST_F(GeoTiff, IsCloudOptimisedAndComplete) {
   const std::filesystem::path file = folder_ / "map.tif";
   {
@@ -113,7 +256,7 @@ TEST_F(GeoTiff, IsCloudOptimisedAndComplete) {
   EXPECT_STREQ(band.GetDescription(), "height");
   EXPECT_STREQ(band.GetUnitType(), "m");
   EXPECT_EQ(band.GetNoDataValue(), static_cast<double>(kNoData));
-  ASSERT_EQ(band.GetOverviewCount(), 3);
+  ASSERT_EQ(band.GetOverviewCount(), 2);
   EXPECT_EQ(band.GetOverview(0)->GetXSize(), 550);
   std::vector<float> values(1100 * 700);
   ASSERT_EQ(band.RasterIO(GF_Read, 0, 0, 1100, 700, values.data(), 1100, 700, GDT_Float32, 0, 0, nullptr), CE_None);

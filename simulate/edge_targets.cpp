@@ -131,15 +131,14 @@ std::vector<EdgeTarget> ChooseEdgeTargets(const World& world, const PlaceSpec& p
 }
 
 void WriteEdgeTargets(const std::vector<EdgeTarget>& targets, const std::filesystem::path& file) {
-  using Json = nlohmann::ordered_json;
-  Json list = Json::array();
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const EdgeTarget& target : targets) {
     list.push_back({{"centre_enu", {target.centre.x(), target.centre.y(), target.centre.z()}},
                     {"side_m", target.paint.side_m},
                     {"yaw_deg", target.paint.yaw_rad * 180.0 / std::numbers::pi},
                     {"black_half", "left of the line through the centre along yaw"}});
   }
-  base::WriteFileAtomically(file, base::JsonText(Json{{"targets", std::move(list)}}, 1) + "\n");
+  base::WriteFileAtomically(file, base::JsonText(nlohmann::ordered_json{{"targets", std::move(list)}}, 1) + "\n");
 }
 
 }  // namespace skyquilt::simulate

@@ -112,7 +112,7 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     asked.ortho = flags.ortho;
     asked.dsm = flags.dsm;
     std::optional<products::MapPhotos> photos;
-    if (from_photos) photos.emplace(*survey, products::PictureMemory(settings.run.MemoryLimitBytes()), threads);
+    if (from_photos) photos.emplace(products::MapPhotos{*survey, products::PictureMemory(settings.run.MemoryLimitBytes()), threads});
     products::LogMaps(products::MakeMapProducts(scene, asked, maps, threads, photos ? &*photos : nullptr), maps);
   }
   if (!flags.plane.empty()) {

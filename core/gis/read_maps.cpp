@@ -173,6 +173,44 @@ image::ImageF ReadMapPart(const std::filesystem::path& file, const Eigen::Aligne
   return image;
 }
 
+struct MapReader::Impl {
+  std::filesystem::path file;
+  internal::Dataset dataset;
+  MapGrid grid;
+};
+
+MapReader::MapReader(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
+  const internal::QuietErrors quiet;
+  GDALRegister_GTiff();
+  impl_->file = file;
+  impl_->dataset = OpenToRead(file, GDAL_OF_RASTER);
+  impl_->grid = GridOf(impl_->dataset.get(), file);
+}
+
+MapReader::~MapReader() = default;
+MapReader::MapReader(MapReader&&) noexcept = default;
+
+const MapGrid& MapReader::grid() const {
+  return impl_->grid;
+}
+
+image::ImageF MapReader::Read(int column, int row, int width, int height) const {
+  const internal::QuietErrors quiet;
+  GDALDataset* const dataset = impl_->dataset.get();
+  const int bands = dataset->GetRasterCount();
+  image::ImageF image(width, height, bands, std::numeric_limits<float>::quiet_NaN());
+  const int left = std::max(column, 0), right = std::min(column + width, impl_->grid.width);
+  const int top = std::max(row, 0), bottom = std::min(row + height, impl_->grid.height);
+  if (left >= right || top >= bottom) return image;
+  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
+  if (dataset->RasterIO(GF_Read, left, top, right - left, bottom - top, image.At(left - column, top - row), right - left, bottom - top, GDT_Float32,
+                        bands, nullptr, pixel, pixel * width, sizeof(float), nullptr) != CE_None) {
+    throw base::InputError(impl_->file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), kMakeAgain);
+  }
+  internal::ForgetNoData(dataset, &image);
+  return image;
+}
+
 Contours ReadContours(const std::filesystem::path& gpkg, int64_t max_vertices) {
   const internal::QuietErrors quiet;
   GDALAllRegister();

@@ -62,6 +62,9 @@ struct Truth {
   std::filesystem::path normals_folder = {};  // <photo stem>.png, core/image/normal_image.h
   std::filesystem::path classes_folder = {};  // <photo stem>.png, core/survey/surface_class.h
   std::filesystem::path surface_ply = {};     // mesh with a class per face
+  std::filesystem::path ortho_tif = {};
+  std::filesystem::path edge_targets_json = {};
+  std::filesystem::path masks_folder = {};
 };
 
 struct Survey {

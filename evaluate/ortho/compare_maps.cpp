@@ -108,9 +108,9 @@ std::vector<OrthoCrop> ChooseCrops(const std::vector<OpenMaps>& maps, const std:
     crops.push_back({PictureOfPart(pair.map), PictureOfPart(pair.truth), what, skyquilt::metrics::PsnrOf(scores[tile].error)});
   };
   const size_t n = order.size();
-  if (n > 0) add(n - 1, "where they differ most");
-  if (n > 10) add(9 * n / 10, "worse than nine tenths of the map");
-  if (n > 2) add(n / 2, "as usual");
+  if (n > 0) add(n - 1, "Where they differ most");
+  if (n > 10) add(9 * n / 10, "Worse than nine tenths of the map");
+  if (n > 2) add(n / 2, "As usual");
   return crops;
 }
 
@@ -197,8 +197,9 @@ std::vector<OpenMaps> OpenForThreads(const MapFiles& files, const base::ThreadPo
 
 Eigen::Vector2d MeasureShift(const std::vector<OpenMaps>& maps, const CellArea& area, base::ThreadPool& threads) {
   constexpr int kPlaces = 4, kPlaceCells = 256;  // kPlaces x kPlaces
-  constexpr std::array<int, 10> kRadii = {12, 12, 12, 4, 4, 4, 0, 0, 0, 0};
-  constexpr double kMost = 30.0, kNothing = 0.02;  // cells
+  constexpr int kFinest = 2;  // without any blur rounding to whole levels would favour shifts by half a cell, which smooth the truth
+  constexpr std::array<int, 8> kRadii = {12, 12, 12, 4, 4, kFinest, kFinest, kFinest};
+  constexpr double kMost = 30.0, kNothing = 0.05;  // cells
   const gis::MapGrid& grid = maps.front().map.grid();
   const int size = std::min(kPlaceCells, std::max(32, static_cast<int>(kMostTruthPerTile * grid.resolution_m / maps.front().truth.cell_m() / 4.0)));
   std::vector<CellArea> places;
@@ -233,7 +234,7 @@ Eigen::Vector2d MeasureShift(const std::vector<OpenMaps>& maps, const CellArea& 
     shift_m -= grid.resolution_m / determinant * step;
     if (!(shift_m.norm() < kMost * grid.resolution_m)) return Eigen::Vector2d::Zero();
   }
-  const bool better = sums_at(shift_m, 0).dd < sums_at(Eigen::Vector2d::Zero(), 0).dd;
+  const bool better = sums_at(shift_m, kFinest).dd < sums_at(Eigen::Vector2d::Zero(), kFinest).dd;
   return better && shift_m.norm() > kNothing * grid.resolution_m ? shift_m : Eigen::Vector2d::Zero();
 }
 

@@ -102,7 +102,8 @@ std::vector<EdgeTarget> ReadEdgeTargets(const std::filesystem::path& edge_target
       evaluate::surface::SurveyFromTruth(edge_targets_json.parent_path().parent_path() / "simulate.json", survey_origin);
   std::vector<EdgeTarget> targets;
   try {
-    for (const nlohmann::json& one : base::ParseJson(base::ReadFile(edge_targets_json)).at("targets")) {
+    const nlohmann::json json = base::ParseJson(base::ReadFile(edge_targets_json));
+    for (const nlohmann::json& one : json.at("targets")) {
       const nlohmann::json& centre = one.at("centre_enu");
       EdgeTarget& target = targets.emplace_back();
       target.centre_enu = survey_from_truth * Eigen::Vector3d(centre.at(0).get<double>(), centre.at(1).get<double>(), centre.at(2).get<double>());

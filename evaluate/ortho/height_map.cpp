@@ -37,7 +37,8 @@ HeightMap::HeightMap(const std::filesystem::path& dsm_tif) {
 double HeightMap::At(const Eigen::Vector2d& easting_northing) const {
   const Eigen::Vector2d cell = grid_.CellOf(easting_northing).array().round();
   const bool inside = cell.x() >= 0.0 && cell.x() < grid_.width && cell.y() >= 0.0 && cell.y() < grid_.height;
-  return inside ? static_cast<double>(*height_m_.At(static_cast<int>(cell.x()), static_cast<int>(cell.y()))) : std::numeric_limits<double>::quiet_NaN();
+  return inside ? static_cast<double>(*height_m_.At(static_cast<int>(cell.x()), static_cast<int>(cell.y())))
+                : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace skyquilt::evaluate::ortho

@@ -10,8 +10,8 @@
 namespace skyquilt::evaluate::ortho {
 namespace {
 
-constexpr int kStripCells = 4;             // on each side
-constexpr int kFlatReach = 3;              // cells
+constexpr int kStripCells = 4;  // on each side
+constexpr int kFlatReach = 3;   // cells
 constexpr float kFlatContrast = 25.0F / 255.0F;
 constexpr int64_t kLeastSeamCells = 32;
 constexpr int kFirstPhoto = 2;  // value of the first photo of a survey in ortho_sources.tif

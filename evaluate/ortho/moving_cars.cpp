@@ -11,9 +11,9 @@ namespace skyquilt::evaluate::ortho {
 namespace {
 
 constexpr float kClearDifference = 20.0F / 255.0F;
-constexpr int kMaskBlock = 32;         // pixels whose places on the ground are looked up together
+constexpr int kMaskBlock = 32;           // pixels whose places on the ground are looked up together
 constexpr double kGroundMargin_m = 0.5;  // around them, for the height of what stands there
-constexpr int kCompareTile = 128;      // cells
+constexpr int kCompareTile = 128;        // cells
 
 // One bit per cell; may be set by several threads.
 class CellSet {

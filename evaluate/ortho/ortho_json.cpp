@@ -37,7 +37,8 @@ constexpr std::array<std::pair<const char*, int64_t OrthoScores::*>, 6> kOrthoCo
 nlohmann::ordered_json ToJson(const OrthoScores& scores) {
   nlohmann::ordered_json json;
   for (const auto& [key, member] : kOrthoNumbers) json[key] = base::NumberOrNull(scores.*member);
-  for (const auto& [key, member] : kOrthoCounts) json[key] = scores.*member < 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(scores.*member);
+  for (const auto& [key, member] : kOrthoCounts)
+    json[key] = scores.*member < 0 ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(scores.*member);
   return json;
 }
 

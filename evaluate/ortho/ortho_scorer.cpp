@@ -119,8 +119,8 @@ void ScoreAgainstTruth(const OrthoInput& input, base::ThreadPool& threads, Ortho
     TakeComparison(CompareMaps(maps, area, shift_m, heights ? &*heights : nullptr, threads), result);
   }
   if (IsFile(truth.edge_targets_json)) {
-    const EdgeSharpness sharpness = MeasureSharpness(ReadEdgeTargets(truth.edge_targets_json, input.survey.origin, shift_m), maps.front().map,
-                                                     input.survey, frame);
+    const EdgeSharpness sharpness =
+        MeasureSharpness(ReadEdgeTargets(truth.edge_targets_json, input.survey.origin, shift_m), maps.front().map, input.survey, frame);
     scores.edge_targets = sharpness.targets;
     scores.mtf50_per_cell = sharpness.map_per_cell;
     scores.mtf50_per_m = sharpness.map_per_m;
@@ -129,8 +129,7 @@ void ScoreAgainstTruth(const OrthoInput& input, base::ThreadPool& threads, Ortho
   }
   std::error_code ignored;
   if (input.sources && heights && !truth.masks_folder.empty() && fs::is_directory(truth.masks_folder, ignored)) {
-    const MovingCars cars =
-        CountMovingCars(maps, shift_m, input.sources->photos, truth.masks_folder, input.survey, *heights, frame, threads);
+    const MovingCars cars = CountMovingCars(maps, shift_m, input.sources->photos, truth.masks_folder, input.survey, *heights, frame, threads);
     scores.moving_car_cells = cars.cells;
     if (cars.cells > 0) scores.moving_car_share = static_cast<double>(cars.differing) / static_cast<double>(cars.cells);
   }

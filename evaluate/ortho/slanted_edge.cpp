@@ -12,7 +12,7 @@
 namespace skyquilt::evaluate::ortho {
 namespace {
 
-constexpr int kSmallestPatch = 16;      // pixels
+constexpr int kSmallestPatch = 16;       // pixels
 constexpr double kLeastContrast = 0.02;  // linear light, between the two sides
 constexpr int kBinsPerPixel = 4;
 constexpr double kMostEmptyBins = 0.2;  // of all: an edge along rows or columns fills only every fourth

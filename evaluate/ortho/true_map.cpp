@@ -11,7 +11,7 @@
 namespace skyquilt::evaluate::ortho {
 namespace {
 
-constexpr float kOpaque = 127.5F;  // least alpha of a cell with data
+constexpr float kOpaque = 127.5F;   // least alpha of a cell with data
 constexpr double kNoWeight = 1e-6;  // cells that touch by rounding only
 
 // What a cell of the result takes along one axis: cells of the source from `first` on.
@@ -41,7 +41,8 @@ std::vector<Taps> TapsOf(double from, double step, int n) {
         continue;
       }
       --one.first;
-      for (const double weight : {f * (f * (1.0 - 0.5 * f) - 0.5), 1.0 + f * f * (1.5 * f - 2.5), f * (f * (2.0 - 1.5 * f) + 0.5), 0.5 * f * f * (f - 1.0)}) {
+      for (const double weight :
+           {f * (f * (1.0 - 0.5 * f) - 0.5), 1.0 + f * f * (1.5 * f - 2.5), f * (f * (2.0 - 1.5 * f) + 0.5), 0.5 * f * f * (f - 1.0)}) {
         one.weight.push_back(static_cast<float>(weight));
       }
     }

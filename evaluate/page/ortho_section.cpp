@@ -35,7 +35,8 @@ std::string OrthoFigures(const ortho::OrthoScores& scores) {
   row("MTF50 on the ground", scores.mtf50_per_m, 2, "cycles per metre", "The same in metres.");
   row("MTF50 of a photo straight down", scores.photo_mtf50_per_px, 3, "cycles per pixel", "As much sharpness as there was to begin with.");
   row("The same on the ground", scores.photo_mtf50_per_m, 2, "cycles per metre", "The same in metres.");
-  row("Seams", scores.seam_levels, 2, "of 255", "Step in the map's error where one photo ends and the next begins, on flat ground; mean over pairs of photos.");
+  row("Seams", scores.seam_levels, 2, "of 255",
+      "Step in the map's error where one photo ends and the next begins, on flat ground; mean over pairs of photos.");
   row("Worst seam", scores.seam_levels_worst, 2, "of 255", "The pair with the largest step.");
   if (scores.moving_car_cells >= 0) {
     table.Row("Cells under moving cars", FormatInteger(scores.moving_car_cells), "Cells where a photo in use shows a moving car or its shadow.");

@@ -158,8 +158,8 @@ std::string BuildReportPage(const ReportInput& input) {
   frame.anchors.emplace_back("details", "Details");
   if (!brightness.empty()) frame.anchors.emplace_back("brightness", "Brightness");
   frame.anchors.insert(frame.anchors.end(), {{"training", "Training"}, {"method", "Method"}});
-  return PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + map + walls + made + found +
-         GeoSection(input) + control + files + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + PageEnd();
+  return PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + map + walls + made +
+         found + GeoSection(input) + control + files + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + PageEnd();
 }
 
 }  // namespace skyquilt::evaluate::page

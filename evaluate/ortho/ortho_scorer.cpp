@@ -152,7 +152,7 @@ void TakeSources(const OrthoInput& input, OrthoScores* scores) {
 std::string PartsOf(const OrthoScores& scores) {
   std::string text = fmt::format("PSNR {:.2f} dB, SSIM {:.3f}", scores.psnr_db, scores.ssim);
   if (scores.shift_east_m != 0.0 || scores.shift_north_m != 0.0) {
-    text += fmt::format(" after moving it back by {:.2f} m east and {:.2f} m north", scores.shift_east_m, scores.shift_north_m);
+    text += fmt::format(" after moving it back by {:.3f} m east and {:.3f} m north", scores.shift_east_m, scores.shift_north_m);
   }
   if (std::isfinite(scores.mtf50_per_cell)) {
     text += fmt::format(", MTF50 {:.3f} cycles per cell, {:.2f} per metre (a photo straight down has {:.3f} per pixel, {:.2f} per metre)",

@@ -69,7 +69,10 @@ struct PhotoSharpness {
 };
 
 PhotoSharpness InPhoto(const EdgeTarget& target, const survey::Survey& survey, const survey::Photo& photo) {
-  const image::Image8 pixels = image::LoadRgb8(survey.photo_root / photo.name);
+  const std::filesystem::path file = survey.photo_root / photo.name;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return {};
+  const image::Image8 pixels = image::LoadRgb8(file);
   const camera::Camera camera = survey.cameras[static_cast<size_t>(photo.camera)].Resized(pixels.width, pixels.height);
   const auto seen = [&](double east, double north) {
     return camera.ImgFromCam(photo.cam_from_enu * (target.centre_enu + Eigen::Vector3d(east, north, 0.0)));

@@ -29,7 +29,7 @@ struct EdgeSharpness {
   double photo_per_px = kNotMeasured, photo_per_m = kNotMeasured;
 };
 // MTF50 in cycles, medians over the targets. Photos: for each target the training photo that is most nearly above it, or one of the next three when
-// the edge cannot be measured there. Targets of which a figure cannot be measured do not count for it.
+// the edge cannot be measured there, or the file is gone. Targets of which a figure cannot be measured do not count for it.
 EdgeSharpness MeasureSharpness(const std::vector<EdgeTarget>& targets, const gis::MapReader& map, const survey::Survey& survey,
                                const skyquilt::surface::MapFrame& frame);
 

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "core/base/file.h"
 #include "core/image/srgb.h"
 #include "evaluate/ortho/ortho_json.h"
-#include "nlohmann/json.hpp"
 #include "tests/evaluate/ortho/made_map.h"
 #include "tests/support/in_temporary_folder.h"
 #include "tests/support/nadir_photo.h"

@@ -197,16 +197,21 @@ const MapGrid& MapReader::grid() const {
 image::ImageF MapReader::Read(int column, int row, int width, int height) const {
   const internal::QuietErrors quiet;
   GDALDataset* const dataset = impl_->dataset.get();
-  const int bands = dataset->GetRasterCount();
+  const int stored = dataset->GetRasterCount();
+  const bool masked = stored == 3 && dataset->GetRasterBand(1)->GetMaskFlags() == GMF_PER_DATASET;
+  const int bands = masked ? 4 : stored;
   image::ImageF image(width, height, bands, std::numeric_limits<float>::quiet_NaN());
   const int left = std::max(column, 0), right = std::min(column + width, impl_->grid.width);
   const int top = std::max(row, 0), bottom = std::min(row + height, impl_->grid.height);
   if (left >= right || top >= bottom) return image;
-  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands;
-  if (dataset->RasterIO(GF_Read, left, top, right - left, bottom - top, image.At(left - column, top - row), right - left, bottom - top, GDT_Float32,
-                        bands, nullptr, pixel, pixel * width, sizeof(float), nullptr) != CE_None) {
-    throw base::InputError(impl_->file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), kMakeAgain);
-  }
+  const int columns = right - left, rows = bottom - top;
+  float* const out = image.At(left - column, top - row);
+  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands, line = pixel * width;
+  const bool read = dataset->RasterIO(GF_Read, left, top, columns, rows, out, columns, rows, GDT_Float32, stored, nullptr, pixel, line, sizeof(float),
+                                      nullptr) == CE_None &&
+                    (!masked || dataset->GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Read, left, top, columns, rows, out + stored, columns, rows,
+                                                                                   GDT_Float32, pixel, line, nullptr) == CE_None);
+  if (!read) throw base::InputError(impl_->file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), kMakeAgain);
   internal::ForgetNoData(dataset, &image);
   return image;
 }

@@ -35,8 +35,8 @@ class MapReader {
   MapReader(MapReader&&) noexcept;
 
   const MapGrid& grid() const;
-  // The cells [column, column + width) x [row, row + height), all bands interleaved as float, as they are in the file. NaN outside the map, where
-  // a window may reach, and where it has no data. Throws base::InputError when the file cannot be read.
+  // The cells [column, column + width) x [row, row + height), all bands interleaved as float, as they are in the file, a mask as alpha after
+  // red, green, blue. NaN outside the map, where a window may reach, and where it has no data. Throws base::InputError when the file cannot be read.
   image::ImageF Read(int column, int row, int width, int height) const;
 
  private:

@@ -54,17 +54,18 @@ struct SparsePoint {
   int track_length = 0;   // number of training photos that observed it; of all photos in surveys of older programs; 0 when not known
 };
 
-// Ground truth of a simulated survey; absolute paths. The last three are empty for surveys that were simulated or prepared by versions without them.
+// Ground truth of a simulated survey; absolute paths. Those with an initializer are empty where the simulation has none, and in surveys that were
+// simulated or prepared by versions without them.
 struct Truth {
   std::filesystem::path depth_folder;  // <photo stem>.tiff, z-depth (along the camera's z axis) in metres, NaN = sky
   std::filesystem::path buildings_json;
   std::filesystem::path exposure_json;
-  std::filesystem::path normals_folder = {};  // <photo stem>.png, core/image/normal_image.h
-  std::filesystem::path classes_folder = {};  // <photo stem>.png, core/survey/surface_class.h
-  std::filesystem::path surface_ply = {};     // mesh with a class per face
-  std::filesystem::path ortho_tif = {};
-  std::filesystem::path edge_targets_json = {};
-  std::filesystem::path masks_folder = {};
+  std::filesystem::path normals_folder = {};     // <photo stem>.png, core/image/normal_image.h
+  std::filesystem::path classes_folder = {};     // <photo stem>.png, core/survey/surface_class.h
+  std::filesystem::path surface_ply = {};        // mesh with a class per face
+  std::filesystem::path masks_folder = {};       // <photo name>.png, 0 on a moving car or its shadow; only for photos that show one
+  std::filesystem::path ortho_tif = {};          // true orthophoto, RGBA
+  std::filesystem::path edge_targets_json = {};  // where slanted edges are painted on the ground
 };
 
 struct Survey {

@@ -14,6 +14,7 @@
 #include "evaluate/buildings/buildings_report.h"
 #include "evaluate/control/control_pictures.h"
 #include "evaluate/metrics/summary.h"
+#include "evaluate/ortho/ortho_scorer.h"
 #include "evaluate/page/report_writer.h"
 #include "evaluate/photos/choose_photos.h"
 #include "evaluate/photos/held_out_scorer.h"
@@ -117,6 +118,8 @@ metrics::Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads)
   ScorePhotos({input, scorer, made.get(), pictures, saver, scores}, held_out, threads);
   if (made) metrics.surface = made->Result(input, scorer, threads);
   if (found) metrics.buildings = buildings::ScoreBuildings(found->compared, threads);
+  std::optional<ortho::OrthoResult> map = ortho::ScoreOrtho(input.project_folder / "products", *input.survey, input.scene->info(), threads);
+  if (map) metrics.ortho = map->scores;
   metrics.kept_points = photos::MeasureKeptPoints(*input.scene, *input.survey, *input.pixels, scorer.area().boxes, threads);
   metrics.evaluate_seconds = saver.earlier_s() + std::chrono::duration<double>(Clock::now() - start).count();
 
@@ -124,7 +127,8 @@ metrics::Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads)
   for (const metrics::Warning& warning : metrics.warnings) base::LogWarning("{}. {}", warning.finding, warning.advice);
   std::vector<control::MarkPicture> marks;
   if (input.options.report_photos > 0) marks = control::WriteMarkPictures(*input.survey, input.scene, input.ReportFolder(), threads);
-  page::WriteReport(input, metrics, pictures, std::move(marks), found ? &*found : nullptr);
+  page::WriteReport(input, metrics, pictures, std::move(marks), found ? &*found : nullptr,
+                    map ? std::move(map->crops) : std::vector<ortho::OrthoCrop>{});
   saver.Remove();
   return metrics;
 }

@@ -172,6 +172,49 @@ image::ImageF ReadMapPart(const std::filesystem::path& file, const Eigen::Aligne
   return image;
 }
 
+struct MapReader::Impl {
+  std::filesystem::path file;
+  internal::Dataset dataset;
+  MapGrid grid;
+};
+
+MapReader::MapReader(const std::filesystem::path& file) : impl_(std::make_unique<Impl>()) {
+  const internal::QuietErrors quiet;
+  GDALRegister_GTiff();
+  impl_->file = file;
+  impl_->dataset = OpenToRead(file, GDAL_OF_RASTER);
+  impl_->grid = GridOf(impl_->dataset.get(), file);
+}
+
+MapReader::~MapReader() = default;
+MapReader::MapReader(MapReader&&) noexcept = default;
+
+const MapGrid& MapReader::grid() const {
+  return impl_->grid;
+}
+
+image::ImageF MapReader::Read(int column, int row, int width, int height) const {
+  const internal::QuietErrors quiet;
+  GDALDataset* const dataset = impl_->dataset.get();
+  const int stored = dataset->GetRasterCount();
+  const bool masked = stored == 3 && dataset->GetRasterBand(1)->GetMaskFlags() == GMF_PER_DATASET;
+  const int bands = masked ? 4 : stored;
+  image::ImageF image(width, height, bands, std::numeric_limits<float>::quiet_NaN());
+  const int left = std::max(column, 0), right = std::min(column + width, impl_->grid.width);
+  const int top = std::max(row, 0), bottom = std::min(row + height, impl_->grid.height);
+  if (left >= right || top >= bottom) return image;
+  const int columns = right - left, rows = bottom - top;
+  float* const out = image.At(left - column, top - row);
+  const GSpacing pixel = static_cast<GSpacing>(sizeof(float)) * bands, line = pixel * width;
+  const bool read = dataset->RasterIO(GF_Read, left, top, columns, rows, out, columns, rows, GDT_Float32, stored, nullptr, pixel, line, sizeof(float),
+                                      nullptr) == CE_None &&
+                    (!masked || dataset->GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Read, left, top, columns, rows, out + stored, columns, rows,
+                                                                                   GDT_Float32, pixel, line, nullptr) == CE_None);
+  if (!read) throw base::InputError(impl_->file, std::string("cannot be read: ") + CPLGetLastErrorMsg(), kMakeAgain);
+  internal::ForgetNoData(dataset, &image);
+  return image;
+}
+
 Contours ReadContours(const std::filesystem::path& gpkg, int64_t max_vertices) {
   const internal::QuietErrors quiet;
   GDALAllRegister();

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "core/gis/map_grid.h"
@@ -24,6 +25,24 @@ int ReadUndulations(const std::filesystem::path& file);
 // than pixels, else interpolated; transparent cells (alpha) do not count. NaN outside the map and where it has no data. width and height must be
 // positive, the rectangle not empty. Throws base::InputError.
 image::ImageF ReadMapPart(const std::filesystem::path& file, const Eigen::AlignedBox2d& part, int width, int height);
+
+// Reads windows of cells of one GeoTIFF, of any numeric type. For one thread at a time.
+class MapReader {
+ public:
+  // Throws base::InputError as ReadMapGrid.
+  explicit MapReader(const std::filesystem::path& file);
+  ~MapReader();
+  MapReader(MapReader&&) noexcept;
+
+  const MapGrid& grid() const;
+  // The cells [column, column + width) x [row, row + height), all bands interleaved as float, as they are in the file, a mask as alpha after
+  // red, green, blue. NaN outside the map, where a window may reach, and where it has no data. Throws base::InputError when the file cannot be read.
+  image::ImageF Read(int column, int row, int width, int height) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 struct ContourLine {
   double height_m = 0.0;

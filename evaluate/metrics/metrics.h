@@ -14,6 +14,7 @@
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
 #include "evaluate/buildings/building_scores.h"
+#include "evaluate/ortho/ortho_scores.h"
 #include "evaluate/photos/kept_points.h"
 #include "evaluate/photos/photo_score.h"
 #include "evaluate/surface/surface_scores.h"
@@ -86,6 +87,7 @@ struct Metrics {
   photos::KeptPointErrors kept_points;
   std::optional<surface::SurfaceScores> surface;       // nothing when no surface was made
   std::optional<buildings::BuildingScores> buildings;  // nothing when no buildings were searched
+  std::optional<ortho::OrthoScores> ortho;             // nothing when no orthophoto was made
 
   double train_seconds = kNotMeasured;
   double samples_per_second = kNotMeasured;

@@ -7,6 +7,7 @@
 #include "evaluate/control/control_json.h"
 #include "evaluate/metrics/class_json.h"
 #include "evaluate/metrics/metrics_keys.h"
+#include "evaluate/ortho/ortho_json.h"
 #include "evaluate/surface/surface_json.h"
 
 namespace skyquilt::evaluate::metrics {
@@ -102,6 +103,7 @@ std::string MetricsJson(const Metrics& metrics) {
   json["kept_points"] = KeptPointsJson(metrics.kept_points);
   if (metrics.surface) json["surface"] = ToJson(*metrics.surface);
   if (metrics.buildings) json["buildings"] = ToJson(*metrics.buildings);
+  if (metrics.ortho) json["orthophoto"] = ToJson(*metrics.ortho);
   PutNumbers(kTraining, metrics, &json);
   json["peak_rss_bytes"] = BytesOrNull(metrics.peak_rss_bytes);
   json["parameters"] = metrics.parameters;

@@ -8,6 +8,7 @@
 #include "evaluate/buildings/buildings_json.h"
 #include "evaluate/metrics/class_json.h"
 #include "evaluate/metrics/metrics_keys.h"
+#include "evaluate/ortho/ortho_json.h"
 #include "evaluate/surface/surface_json.h"
 
 namespace skyquilt::evaluate::metrics {
@@ -79,6 +80,7 @@ Metrics MetricsFrom(const Json& json) {
   TakeKeptPoints(json, &metrics.kept_points);
   if (json.contains("surface") && json.at("surface").is_object()) metrics.surface = surface::SurfaceScoresFromJson(json.at("surface"));
   if (json.contains("buildings") && json.at("buildings").is_object()) metrics.buildings = buildings::BuildingScoresFromJson(json.at("buildings"));
+  if (json.contains("orthophoto") && json.at("orthophoto").is_object()) metrics.ortho = ortho::OrthoScoresFromJson(json.at("orthophoto"));
   const Json profile = ValueAt<Json>(json, "floater_profile"), photos = ValueAt<Json>(json, "psnr_per_image");
   for (const Json& place : profile) {
     metrics.floater_profile.emplace_back(NumberAt(place, "clearance_m"), NumberAt(place, "opacity"));

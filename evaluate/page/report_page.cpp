@@ -12,6 +12,7 @@
 #include "evaluate/page/buildings_section.h"
 #include "evaluate/page/control_section.h"
 #include "evaluate/page/geo_section.h"
+#include "evaluate/page/ortho_section.h"
 #include "evaluate/page/page_parts.h"
 #include "evaluate/page/sections.h"
 
@@ -139,6 +140,7 @@ std::string BuildReportPage(const ReportInput& input) {
                  "all parts of the input");
   SKYQUILT_CHECK(input.images.empty() || input.images.size() == input.metrics->photos.size(), "one entry of images per scored photo");
   const std::string brightness = BrightnessSection(input), made = SurfaceSection(input), found = BuildingsSection(input);
+  const std::string map = input.metrics->ortho ? OrthoSection(*input.metrics->ortho, input.ortho_pictures) : "";
   const std::string walls = ElevationSection(input.elevations, input.survey->georeferenced);
   const std::string control = ControlSection(input), files = InputSection(input);
   PageFrame frame{.title = input.title,
@@ -146,6 +148,7 @@ std::string BuildReportPage(const ReportInput& input) {
                   .subtitle = fmt::format("Survey report \xC2\xB7 {} \xC2\xB7 {} photos, {} blocks", ShownDate(input.metrics->date),
                                           FormatInteger(input.metrics->n_photos), input.blocks->blocks.size()),
                   .anchors = {{"summary", "Summary"}, {"map-section", "Map"}, {"photos", "Photos"}}};
+  if (!map.empty()) frame.anchors.emplace_back("orthophoto", "Orthophoto");
   if (!walls.empty()) frame.anchors.emplace_back("elevations", "Elevations");
   if (!made.empty()) frame.anchors.emplace_back("surface", "Surface");
   if (!found.empty()) frame.anchors.emplace_back("buildings", "Buildings");
@@ -155,8 +158,8 @@ std::string BuildReportPage(const ReportInput& input) {
   frame.anchors.emplace_back("details", "Details");
   if (!brightness.empty()) frame.anchors.emplace_back("brightness", "Brightness");
   frame.anchors.insert(frame.anchors.end(), {{"training", "Training"}, {"method", "Method"}});
-  return PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + walls + made + found +
-         GeoSection(input) + control + files + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + PageEnd();
+  return PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + map + walls + made +
+         found + GeoSection(input) + control + files + DetailsSection(input) + brightness + TrainingSection(input) + MethodSection(input) + PageEnd();
 }
 
 }  // namespace skyquilt::evaluate::page

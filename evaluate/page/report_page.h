@@ -14,6 +14,7 @@
 #include "evaluate/page/drawn_map.h"
 #include "evaluate/page/elevation_section.h"
 #include "evaluate/page/input_files.h"
+#include "evaluate/page/ortho_section.h"
 #include "partition/block.h"
 
 namespace skyquilt::evaluate::buildings {
@@ -46,6 +47,7 @@ struct ReportInput {
   std::vector<PhotoImages> images;                        // entry i belongs to metrics->photos[i]
   std::vector<control::MarkPicture> mark_pictures;        // of the survey's control points, in their order
   std::optional<MapBackground> background;
+  std::vector<OrthoPicture> ortho_pictures;  // none without a true map
   std::vector<ElevationPicture> elevations;  // none: no such section
   std::string color_ramp;                    // picture of the colour map from low to high, relative to the page; empty: no legend
   double error_high = 0.25;                  // display values at the top of the error colours

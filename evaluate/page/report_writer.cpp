@@ -33,6 +33,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
   for (const PhotoImages& one : page.images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh});
   for (const control::MarkPicture& one : page.mark_pictures) kept.insert({one.photo, one.render});
   for (const ElevationPicture& one : page.elevations) kept.insert(one.image);
+  for (const OrthoPicture& one : page.ortho_pictures) kept.insert({one.map, one.truth});
   if (found != nullptr) {
     for (const buildings::BuildingPicture& one : found->pictures) kept.insert(one.file);
   }
@@ -41,7 +42,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
   for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
     const std::string name = entry.path().filename().string();
     const bool ours = name.starts_with("photo_") || name.starts_with("building_") || name.starts_with("elevation_") || name.starts_with("control_") ||
-                      name.starts_with("preview_");
+                      name.starts_with("preview_") || name.starts_with("ortho_");
     if (ours && !kept.contains("images/" + name)) stale.push_back(entry.path());
   }
   for (const std::filesystem::path& file : stale) std::filesystem::remove(file, ignored);
@@ -98,7 +99,7 @@ void ReportPictures::WriteView(const photos::ScoredPhoto& scored, size_t view) {
 }
 
 void WriteReport(const EvaluateInput& input, const metrics::Metrics& metrics, const ReportPictures& pictures, std::vector<control::MarkPicture> marks,
-                 buildings::BuildingsReport* found) {
+                 buildings::BuildingsReport* found, const std::vector<ortho::OrthoCrop>& ortho_crops) {
   const std::filesystem::path report_folder = input.ReportFolder();
   const scene::TrainReport unknown;
   std::vector<std::string> names;
@@ -123,6 +124,7 @@ void WriteReport(const EvaluateInput& input, const metrics::Metrics& metrics, co
   }
   page.buildings = found;
   page.background = CopyMapBackground(input.project_folder / "products", report_folder);
+  page.ortho_pictures = WriteOrthoPictures(ortho_crops, report_folder);
   page.elevations = CopyElevations(input.project_folder / "products", report_folder);
   page.color_ramp = WriteColorRamp(report_folder);
   page.error_high = static_cast<double>(kErrorHigh);

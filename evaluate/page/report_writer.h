@@ -6,6 +6,7 @@
 #include "evaluate/buildings/buildings_report.h"
 #include "evaluate/evaluate_input.h"
 #include "evaluate/metrics/metrics.h"
+#include "evaluate/ortho/ortho_scores.h"
 #include "evaluate/page/brightness_report.h"
 #include "evaluate/page/report_page.h"
 #include "evaluate/page/written_pictures.h"
@@ -41,6 +42,6 @@ class ReportPictures {
 // Writes all other files, pictures of the buildings included (null: none were searched), but those of marks; metrics.json last, so that it exists
 // only when the evaluation is complete. Throws base::InputError when a file cannot be written.
 void WriteReport(const EvaluateInput& input, const metrics::Metrics& metrics, const ReportPictures& pictures, std::vector<control::MarkPicture> marks,
-                 buildings::BuildingsReport* found);
+                 buildings::BuildingsReport* found, const std::vector<ortho::OrthoCrop>& ortho_crops);
 
 }  // namespace skyquilt::evaluate::page

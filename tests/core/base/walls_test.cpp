@@ -79,8 +79,9 @@ const std::map<std::string, InnerRoom>& InnerRooms() {
             {"surface", {"photos"}},
             {"buildings", {"surface"}},
             {"control", {"photos"}},
-            {"metrics", {"photos", "surface", "buildings", "control"}},
-            {"page", {"photos", "surface", "buildings", "control", "metrics"}},
+            {"ortho", {"surface"}},
+            {"metrics", {"photos", "surface", "buildings", "control", "ortho"}},
+            {"page", {"photos", "surface", "buildings", "control", "ortho", "metrics"}},
         },
         {"evaluate/evaluate_input.h", "evaluate/evaluate_options.h", "evaluate/json_members.h", "evaluate/measured.h"}}},
   };

@@ -55,6 +55,19 @@ TEST_F(ReadMaps, FindsPlaceAndZone) {
   EXPECT_NE(InputErrorOf([&] { ReadMapGrid(folder_ / "none.tif"); }).find("does not exist"), std::string::npos);
 }
 
+TEST_F(ReadMaps, AWindowHasTheCellsOfTheFile) {
+  WriteColumns(SmallGrid(true, {32, true}), folder_ / "map.tif");
+  const MapReader reader(folder_ / "map.tif");
+  EXPECT_EQ(reader.grid().width, 60);
+  const image::ImageF window = reader.Read(-2, 0, 70, 3);
+  ASSERT_EQ(window.width, 70);
+  ASSERT_EQ(window.height, 3);
+  for (const int x : {0, 1, 62, 69}) EXPECT_TRUE(std::isnan(*window.At(x, 1))) << "beyond the map";
+  EXPECT_TRUE(std::isnan(*window.At(10, 0))) << "no data";
+  for (int x = 0; x < 60; ++x) EXPECT_EQ(*window.At(x + 2, 2), static_cast<float>(x));
+  EXPECT_TRUE(std::isnan(*reader.Read(0, 40, 1, 1).At(0, 0)));
+}
+
 TEST_F(ReadMaps, APartIsWhereItWasAskedFor) {
   const MapGrid grid = SmallGrid(true, {32, true});
   WriteColumns(grid, folder_ / "map.tif");

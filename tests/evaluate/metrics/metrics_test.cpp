@@ -156,6 +156,26 @@ TEST_F(MetricsJsonTest, ScoresByClassAreReadBackToo) {
   EXPECT_EQ(MetricsJson(back), text);
 }
 
+TEST_F(MetricsJsonTest, TheOrthophotoIsReadBackToo) {
+  Metrics metrics;
+  EXPECT_FALSE(base::ParseJson(MetricsJson(metrics)).contains("orthophoto"));
+  ortho::OrthoScores& scores = metrics.ortho.emplace();
+  scores.cell_m = 0.05;
+  scores.cells = 30000000;
+  scores.psnr_db = 24.5;
+  scores.seam_levels = 1.25;
+  const std::filesystem::path file = folder_ / "metrics.json";
+  base::WriteFileAtomically(file, MetricsJson(metrics));
+  const Metrics read = ReadMetrics(file);
+  ASSERT_TRUE(read.ortho);
+  EXPECT_EQ(read.ortho->cells, 30000000);
+  EXPECT_EQ(read.ortho->cell_m, 0.05);
+  EXPECT_EQ(read.ortho->psnr_db, 24.5);
+  EXPECT_EQ(read.ortho->seam_levels, 1.25);
+  EXPECT_EQ(read.ortho->photos_in_use, -1);
+  EXPECT_TRUE(std::isnan(read.ortho->moving_car_share));
+}
+
 TEST_F(MetricsJsonTest, TheGeoReferenceIsReadBackToo) {
   Metrics metrics;
   metrics.georeferenced = true;

@@ -132,6 +132,7 @@ void GeoTiffWriter::WriteRows(int first_row, int n_rows, std::span<const float> 
 // Copies the complete file into a cloud-optimised one: GDAL writes those only as a copy, because the overviews come first.
 void GeoTiffWriter::Impl::Rearrange() {
   GDALRegister_COG();
+  GDALRegister_VRT();  // in which the COG driver takes alpha for a mask
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
   SKYQUILT_CHECK(driver != nullptr, "GDAL without cloud-optimised GeoTIFF");
   const Dataset source(GDALDataset::Open(plain->path().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));

@@ -22,7 +22,8 @@ void WriteOrthophotoPicture(const scene::SceneInfo& info, const gis::MapGrid& gr
 void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& file, const std::string& preview = "");
 
 // Reads the maps from their files (an empty path skips one) and writes orthophoto.png, dsm.png and orthophoto.json into `folder`, at most
-// preview_width pixels wide. orthophoto.json has the first grid. Image axes are east and north of the survey's ENU frame, not those of the map projection. Throws base::InputError.
+// preview_width pixels wide. orthophoto.json has the first grid. Image axes are east and north of the survey's ENU frame, not those of the map
+// projection. Throws base::InputError.
 void WriteMapPreviews(const scene::SceneInfo& info, const gis::MapGrid& ortho_grid, const std::filesystem::path& orthophoto,
                       const gis::MapGrid& dsm_grid, const std::filesystem::path& dsm, const std::filesystem::path& folder, int preview_width);
 

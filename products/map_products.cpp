@@ -170,8 +170,8 @@ void LogMaps(const MapProducts& made, const std::filesystem::path& folder) {
                 made.grid.width, made.grid.height, made.grid.resolution_m, made.painted->photos, 100.0 * field_share, made.orthophoto.string());
 }
 
-MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options,
-                            const std::filesystem::path& folder, const MapPhotos* photos) {
+MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options, const std::filesystem::path& folder,
+                            const MapPhotos* photos) {
   MapProducts products;
   products.grid = PlanMapGrid(info, options);
   if (!options.ortho && !options.dsm) return products;

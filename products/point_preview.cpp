@@ -20,7 +20,7 @@
 namespace skyquilt::products {
 namespace {
 
-constexpr int kSurfaceStep = 4;    // cells of the map in one of the surface, along an axis
+constexpr int kSurfaceStep = 4;     // cells of the map in one of the surface, along an axis
 constexpr int kChoicePlaces = 100;  // per side of the area, for which few photos are chosen from many
 constexpr size_t kNamedPhotos = 3;
 

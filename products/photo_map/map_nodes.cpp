@@ -15,19 +15,19 @@
 namespace skyquilt::products {
 namespace {
 
-constexpr double kSlackCells = 1.5;         // of the surface
-constexpr int kTileNodes = 96;              // whose photos are chosen together
-constexpr int kOverlapNodes = 16;           // of tiles, in which seams of neighbours come to agree
+constexpr double kSlackCells = 1.5;  // of the surface
+constexpr int kTileNodes = 96;       // whose photos are chosen together
+constexpr int kOverlapNodes = 16;    // of tiles, in which seams of neighbours come to agree
 constexpr int kCandidates = kMostSeen;
-constexpr double kRimShare = 0.08;          // of the shorter side of a photo, where it gives way to others
+constexpr double kRimShare = 0.08;  // of the shorter side of a photo, where it gives way to others
 constexpr double kRimCost = 0.02;
-constexpr float kSmoothness = 2.0F;         // of seams, against the cost of views
-constexpr float kMovedCost = 2.0F;          // of a photo that shows something else than the others do: more than any view costs
+constexpr float kSmoothness = 2.0F;  // of seams, against the cost of views
+constexpr float kMovedCost = 2.0F;   // of a photo that shows something else than the others do: more than any view costs
 constexpr float kBesideMovedCost = 0.5F;
-constexpr float kLeastDeviation = 0.035F;   // of display values that agree
+constexpr float kLeastDeviation = 0.035F;  // of display values that agree
 constexpr float kOutlierFactor = 3.0F;
-constexpr size_t kLightPlaces = 60000;      // at which light is measured
-constexpr size_t kLightViews = 6;             // of each of them
+constexpr size_t kLightPlaces = 60000;  // at which light is measured
+constexpr size_t kLightViews = 6;       // of each of them
 constexpr size_t kComparedViews = 4;
 constexpr float kDarkestCompared = 0.004F;  // linear light that is compared: neither noise nor clipped
 constexpr float kBrightestCompared = 0.8F;
@@ -44,7 +44,8 @@ struct NodeView {
 // Finds the photos that see a place.
 class ViewFinder {
  public:
-  ViewFinder(const PhotoMapInput& input) : input_(input), eyes_map_(EyesOnMap(input.survey, input.projection)), slack_m_(SightSlack_m(input.surface)) {
+  ViewFinder(const PhotoMapInput& input)
+      : input_(input), eyes_map_(EyesOnMap(input.survey, input.projection)), slack_m_(SightSlack_m(input.surface)) {
     eyes_enu_.reserve(input.survey.photos.size());
     for (const survey::Photo& photo : input.survey.photos) eyes_enu_.push_back(photo.cam_from_enu.OriginInSource());
   }
@@ -70,7 +71,8 @@ class ViewFinder {
       const double cost = ViewCost(place_enu, eyes_enu_[static_cast<size_t>(photo)], input_.flown_height_m);
       if (std::isfinite(cost)) ranked.push_back({cost, photo, {}});
     }
-    std::sort(ranked.begin(), ranked.end(), [](const NodeView& a, const NodeView& b) { return a.cost < b.cost || (a.cost == b.cost && a.photo < b.photo); });
+    std::sort(ranked.begin(), ranked.end(),
+              [](const NodeView& a, const NodeView& b) { return a.cost < b.cost || (a.cost == b.cost && a.photo < b.photo); });
     for (NodeView& view : ranked) {
       if (views->size() == most) break;
       const survey::Photo& photo = input_.survey.photos[static_cast<size_t>(view.photo)];
@@ -204,8 +206,7 @@ class TileOfNodes {
           const auto photo = static_cast<size_t>(view.photo);
           const std::optional<Colors> color = SmallColor(input_, small, view, &held[photo]);
           if (!color) continue;
-          const std::array<float, 3> factors =
-              light.At(photo, static_cast<size_t>(input_.survey.photos[photo].camera), Radius2Of(input_, view));
+          const std::array<float, 3> factors = light.At(photo, static_cast<size_t>(input_.survey.photos[photo].camera), Radius2Of(input_, view));
           candidates.push_back({view, InLight(*color, factors), static_cast<float>(view.cost), false});
         }
         MarkMoved(candidates, FieldColor(input_, position));

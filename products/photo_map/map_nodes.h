@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
-#include "core/survey/survey.h"
 #include "core/gis/map_projection.h"
+#include "core/survey/survey.h"
 #include "products/photo_map/height_grid.h"
 #include "products/photo_map/photo_light.h"
 #include "products/photo_map/photo_pictures.h"
@@ -22,11 +22,11 @@ struct PhotoMapInput {
   std::span<const char> usable;  // per photo: 1 if it may be shown
   const gis::MapGrid& grid;      // of the map
   const gis::MapProjection& projection;
-  const HeightGrid& surface;                    // heights as of MapProjection
-  std::span<const uint8_t> field_rgba;          // the field's colours on the surface's grid, display values; empty: not known
-  double ground_z = 0.0;                        // ENU, of most of the ground
-  double flown_height_m = 0.0;                  // of most photos, above the ground
-  size_t picture_bytes = size_t{1} << 30;       // of photos kept in memory
+  const HeightGrid& surface;               // heights as of MapProjection
+  std::span<const uint8_t> field_rgba;     // the field's colours on the surface's grid, display values; empty: not known
+  double ground_z = 0.0;                   // ENU, of most of the ground
+  double flown_height_m = 0.0;             // of most photos, above the ground
+  size_t picture_bytes = size_t{1} << 30;  // of photos kept in memory
 };
 
 // A node stands for kNodeCells x kNodeCells cells of the map, which it is in the middle of.

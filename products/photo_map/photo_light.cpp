@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kLightRounds = 4;
 constexpr size_t kFewestFalloffSamples = 200;
-constexpr float kCornerRadius2 = 0.36F;     // samples beyond tell the falloff
-constexpr double kMostFalloff = 1.6;        // |log| in the corner: more is no lens
-constexpr double kWeakFalloff = 1e-3;       // of the diagonal: keeps the fit solvable
+constexpr float kCornerRadius2 = 0.36F;  // samples beyond tell the falloff
+constexpr double kMostFalloff = 1.6;     // |log| in the corner: more is no lens
+constexpr double kWeakFalloff = 1e-3;    // of the diagonal: keeps the fit solvable
 constexpr double kOutlierDeviations = 3.0;
 
 // Sums of the normal equations of a r^2 + b r^4 = y.

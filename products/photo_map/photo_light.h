@@ -25,8 +25,8 @@ struct LightSample {
   std::array<float, 3> log_ratio{};
 };
 
-// Robust: medians for the gains, and samples more than three standard deviations off do not count for the falloff, which stays 0 for a camera with few
-// samples or with none in its corners. Photos without samples get the median gain of all. camera_of_photo: index per photo.
+// Robust: medians for the gains, and samples more than three standard deviations off do not count for the falloff, which stays 0 for a camera with
+// few samples or with none in its corners. Photos without samples get the median gain of all. camera_of_photo: index per photo.
 PhotoLight FitLight(std::span<const LightSample> samples, std::span<const int> camera_of_photo, size_t cameras);
 
 }  // namespace skyquilt::products

@@ -25,8 +25,8 @@ namespace skyquilt::products {
 namespace {
 
 constexpr size_t kNamedFailures = 3;
-constexpr int kFewestViews = 2;        // of the ground inside the cutline
-constexpr double kStepCells = 3.0;     // heights of neighbouring cells that differ by more are a step: a roof's edge
+constexpr int kFewestViews = 2;     // of the ground inside the cutline
+constexpr double kStepCells = 3.0;  // heights of neighbouring cells that differ by more are a step: a roof's edge
 
 // Heights of ground and roof meet in the cells between them, where the field shows neither. Each such cell is given to the nearer of the two, so that
 // no wall is drawn as a slope.
@@ -97,7 +97,8 @@ gis::GeoTiffSpec SourcesSpec(const scene::SceneInfo& info, const gis::MapGrid& g
   return spec;
 }
 
-void WriteSources(const survey::Survey& survey, const PhotoOrthophoto& made, const std::vector<int64_t>& cells_of, const std::filesystem::path& file) {
+void WriteSources(const survey::Survey& survey, const PhotoOrthophoto& made, const std::vector<int64_t>& cells_of,
+                  const std::filesystem::path& file) {
   nlohmann::ordered_json photos = nlohmann::ordered_json::object();
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     const int64_t cells = cells_of[kFirstPhotoSource + i];

@@ -33,13 +33,13 @@ struct PhotoOrthophoto {
   gis::Boundary cutline;  // in the grid's coordinates
 };
 
-// Cells of an orthophoto from these photos: their median ground sampling distance, rounded to 1, 2 or 5 times a power of ten; NaN when none looks down
-// on the ground.
+// Cells of an orthophoto from these photos: their median ground sampling distance, rounded to 1, 2 or 5 times a power of ten; NaN when none looks
+// down on the ground.
 double PhotoResolution_m(const survey::Survey& survey, double ground_z);
 
-// Held-out photos are not used. memory: bytes that the photos in memory may take. Nothing when no photo sees the ground or can be read, with a warning
-// that says why; then no file is written. boundary limits the map further. The same bytes for any number of threads. Files are complete or absent.
-// Throws base::UsageError for a requested resolution with too many cells, base::InputError when a file cannot be written, base::Interrupted.
+// Held-out photos are not used. memory: bytes that the photos in memory may take. Nothing when no photo sees the ground or can be read, with a
+// warning that says why; then no file is written. boundary limits the map further. The same bytes for any number of threads. Files are complete or
+// absent. Throws base::UsageError for a requested resolution with too many cells, base::InputError when a file cannot be written, base::Interrupted.
 std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info, const survey::Survey& survey, const FieldMap& field,
                                                     const ProductOptions& options, const std::optional<gis::Boundary>& boundary, size_t memory,
                                                     const std::filesystem::path& folder, base::ThreadPool& threads);

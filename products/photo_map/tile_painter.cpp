@@ -119,8 +119,8 @@ bool TilePainter::FieldColorOf(size_t cell, float* rgb) const {
   const auto u = static_cast<float>(std::clamp(at.x() - x0, 0.0, 1.0)), v = static_cast<float>(std::clamp(at.y() - y0, 0.0, 1.0));
   float weights = 0.0F;
   rgb[0] = rgb[1] = rgb[2] = 0.0F;
-  for (const auto& [x, y, weight] : {std::tuple(x0, y0, (1.0F - u) * (1.0F - v)), std::tuple(x1, y0, u * (1.0F - v)), std::tuple(x0, y1, (1.0F - u) * v),
-                                     std::tuple(x1, y1, u * v)}) {
+  for (const auto& [x, y, weight] : {std::tuple(x0, y0, (1.0F - u) * (1.0F - v)), std::tuple(x1, y0, u * (1.0F - v)),
+                                     std::tuple(x0, y1, (1.0F - u) * v), std::tuple(x1, y1, u * v)}) {
     const uint8_t* rgba = input_.field_rgba.data() + 4 * grid.Index(x, y);
     if (rgba[3] == 0) continue;
     for (int k = 0; k < 3; ++k) rgb[k] += weight * static_cast<float>(rgba[k]) / 255.0F;

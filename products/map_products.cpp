@@ -23,6 +23,7 @@ namespace skyquilt::products {
 namespace {
 
 constexpr float kNoHeight = -9999.0F;
+constexpr double kMostSurfaceCells = 8e6;  // of the surface that photos are laid on, where it is finer than the scene's detail
 
 gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const scene::MapHeights& heights, const gis::MapGrid& grid) {
   gis::GeoTiffSpec spec;
@@ -137,6 +138,17 @@ void WriteFieldDsm(const scene::SceneInfo& info, const FieldMap& field, const gi
   dsm.Close();
 }
 
+// Edges of roofs are found between the cells of the scene's detail, so the surface has cells of half of it, unless they are many or the user wants
+// larger ones.
+gis::MapGrid PlanSurfaceGrid(const scene::SceneInfo& info, const ProductOptions& options) {
+  ProductOptions own = options;
+  own.resolution_m = 0.0;
+  const gis::MapGrid coarse = PlanMapGrid(info, own);
+  own.resolution_m = 4.0 * static_cast<double>(coarse.size()) <= kMostSurfaceCells ? 0.5 * coarse.resolution_m : coarse.resolution_m;
+  own.resolution_m = std::max(own.resolution_m, options.resolution_m);
+  return PlanMapGrid(info, own);
+}
+
 // The scene as it is seen straight down is the surface that the photos are laid on, so it is kept in memory.
 void PaintFromPhotos(const scene::SceneInfo& info, const RayCaster& caster, const std::optional<gis::Boundary>& boundary,
                      const ProductOptions& options, const MapPhotos& photos, const std::filesystem::path& folder, MapProducts* products) {
@@ -173,7 +185,8 @@ void LogMaps(const MapProducts& made, const std::filesystem::path& folder) {
 MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options, const std::filesystem::path& folder,
                             const MapPhotos* photos) {
   MapProducts products;
-  products.grid = PlanMapGrid(info, options);
+  const bool from_photos = options.ortho && photos != nullptr && options.ortho_source == "photos";
+  products.grid = from_photos ? PlanSurfaceGrid(info, options) : PlanMapGrid(info, options);
   if (!options.ortho && !options.dsm) return products;
   const std::optional<gis::Boundary> boundary = BoundaryOf(products.grid, options);
   if (boundary) products.grid = CropTo(products.grid, *boundary);
@@ -184,7 +197,7 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   if (options.ortho) products.orthophoto = folder / "orthophoto.tif";
   if (options.dsm) products.dsm = folder / "dsm.tif";
   const gis::MapGrid dsm_grid = products.grid;
-  if (options.ortho && photos != nullptr && options.ortho_source == "photos") {
+  if (from_photos) {
     PaintFromPhotos(info, caster, boundary, options, *photos, folder, &products);
   } else {
     RenderToFiles(info, caster, boundary, options, &products);

@@ -12,7 +12,7 @@ namespace {
 constexpr int kBlockCells = 16;            // along a side
 constexpr double kStartCells = 1.5;        // horizontal way from a place that is not looked at
 constexpr double kCentreCells = 0.75;      // more than a line's way inside a cell can be from its point nearest to the cell's centre
-constexpr double kSurfaceStepCells = 2.0;  // between neighbouring cells of one surface
+constexpr double kSurfaceStepCells = 6.0;  // between neighbouring cells of one surface, which may be a steep roof
 
 }  // namespace
 

@@ -26,7 +26,7 @@ namespace {
 
 constexpr size_t kNamedFailures = 3;
 constexpr int kFewestViews = 2;     // of the ground inside the cutline
-constexpr double kStepCells = 3.0;  // heights of neighbouring cells that differ by more are a step: a roof's edge
+constexpr double kStepCells = 9.0;  // heights of neighbouring cells that differ by more are a step: a roof's edge
 
 // Heights of ground and roof meet in the cells between them, where the field shows neither. Each such cell is given to the nearer of the two, so that
 // no wall is drawn as a slope.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "core/image/srgb.h"
@@ -26,10 +27,25 @@ float Look(const std::vector<float>& table, float x) {
   return table[index] + (position - static_cast<float>(index)) * (table[index + 1] - table[index]);
 }
 
-// Weights of the pixels at -1, 0, 1, 2 for a position u in 0..1 between those at 0 and 1.
-std::array<float, 4> CubicWeights(float u) {
-  const float u2 = u * u, u3 = u2 * u;
-  return {-0.5F * u + u2 - 0.5F * u3, 1.0F - 2.5F * u2 + 1.5F * u3, 0.5F * u + 2.0F * u2 - 1.5F * u3, -0.5F * u2 + 0.5F * u3};
+constexpr int kTaps = 6;  // pixels along an axis
+constexpr int kPhases = 256;
+
+// Lanczos weights of the pixels at -2 .. 3 for positions between those at 0 and 1, in steps of 1 / kPhases.
+const std::vector<std::array<float, kTaps>>& LanczosWeights() {
+  static const std::vector<std::array<float, kTaps>> table = [] {
+    std::vector<std::array<float, kTaps>> weights(kPhases + 1);
+    for (int phase = 0; phase <= kPhases; ++phase) {
+      std::array<double, kTaps> exact{};
+      double sum = 0.0;
+      for (int tap = 0; tap < kTaps; ++tap) {
+        const double x = std::numbers::pi * (tap - 2 - static_cast<double>(phase) / kPhases);
+        sum += exact[static_cast<size_t>(tap)] = std::abs(x) < 1e-9 ? 1.0 : 3.0 * std::sin(x) * std::sin(x / 3.0) / (x * x);
+      }
+      for (size_t tap = 0; tap < kTaps; ++tap) weights[static_cast<size_t>(phase)][tap] = static_cast<float>(exact[tap] / sum);
+    }
+    return weights;
+  }();
+  return table;
 }
 
 }  // namespace
@@ -77,17 +93,21 @@ std::array<float, 3> LinearAt(const PhotoPicture& picture, const Eigen::Vector2d
   return result;
 }
 
-std::array<float, 3> CubicAt(const PhotoPicture& picture, const Eigen::Vector2d& pixel) {
+std::array<float, 3> LanczosAt(const PhotoPicture& picture, const Eigen::Vector2d& pixel) {
   const image::Image8& rgb = picture.rgb;
   const double x = pixel.x() - 0.5, y = pixel.y() - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
-  if (x0 < 1 || y0 < 1 || x0 + 2 >= rgb.width || y0 + 2 >= rgb.height) return LinearAt(picture, pixel);
-  const std::array<float, 4> across = CubicWeights(static_cast<float>(x - x0)), down = CubicWeights(static_cast<float>(y - y0));
+  if (x0 < 2 || y0 < 2 || x0 + 3 >= rgb.width || y0 + 3 >= rgb.height) return LinearAt(picture, pixel);
+  const std::array<float, kTaps>& across = LanczosWeights()[static_cast<size_t>(std::lround((x - x0) * kPhases))];
+  const std::array<float, kTaps>& down = LanczosWeights()[static_cast<size_t>(std::lround((y - y0) * kPhases))];
   std::array<float, 3> sum{};
-  for (int j = 0; j < 4; ++j) {
-    const uint8_t* row = rgb.At(x0 - 1, y0 - 1 + j);
-    const float weight = down[static_cast<size_t>(j)];
-    for (size_t k = 0; k < 3; ++k) sum[k] += weight * (across[0] * row[k] + across[1] * row[k + 3] + across[2] * row[k + 6] + across[3] * row[k + 9]);
+  for (int j = 0; j < kTaps; ++j) {
+    const uint8_t* row = rgb.At(x0 - 2, y0 - 2 + j);
+    std::array<float, 3> line{};
+    for (size_t i = 0; i < kTaps; ++i) {
+      for (size_t k = 0; k < 3; ++k) line[k] += across[i] * static_cast<float>(row[3 * i + k]);
+    }
+    for (size_t k = 0; k < 3; ++k) sum[k] += down[static_cast<size_t>(j)] * line[k];
   }
   for (float& value : sum) value = std::clamp(value / 255.0F, 0.0F, 1.0F);
   return sum;

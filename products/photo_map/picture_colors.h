@@ -21,9 +21,10 @@ bool IsMasked(const PhotoPicture& picture, const Eigen::Vector2d& pixel);
 // Distance from the principal point over the farthest corner's, squared.
 float Radius2(const camera::Camera& camera, const Eigen::Vector2d& pixel);
 
-// Display values between the pixels: linear between the nearest four, or cubic (Keys 1981, a = -1/2) between the nearest sixteen, cut to 0..1.
+// Display values between the pixels: linear between the nearest four, or from the nearest 6 x 6 (Lanczos-3, to 1/512 of a pixel), cut
+// to 0..1.
 std::array<float, 3> LinearAt(const PhotoPicture& picture, const Eigen::Vector2d& pixel);
-std::array<float, 3> CubicAt(const PhotoPicture& picture, const Eigen::Vector2d& pixel);
+std::array<float, 3> LanczosAt(const PhotoPicture& picture, const Eigen::Vector2d& pixel);
 // The same in another light: factors on linear light.
 std::array<float, 3> InLight(const std::array<float, 3>& display, const std::array<float, 3>& factors);
 

@@ -103,7 +103,7 @@ bool TilePainter::ColorOf(int32_t photo, const Used& used, size_t cell, float* r
   if (!pixel || IsMasked(*used.picture, *pixel)) return false;
   const std::array<float, 3> factors =
       light_.At(static_cast<size_t>(photo), static_cast<size_t>(source.camera), Radius2(used.picture->camera, *pixel));
-  const std::array<float, 3> color = InLight(CubicAt(*used.picture, *pixel), factors);
+  const std::array<float, 3> color = InLight(LanczosAt(*used.picture, *pixel), factors);
   std::copy(color.begin(), color.end(), rgb);
   return true;
 }

@@ -211,7 +211,7 @@ TEST_F(PhotoOrthophotoTest, PhotosThatAreGoneOrReplacedAreLeftOutAndAllOfThemGiv
   const MapProducts from_field = Make(survey);
   EXPECT_NE(testing::internal::GetCapturedStdout().find("no photo can be read"), std::string::npos);
   EXPECT_FALSE(from_field.painted);
-  EXPECT_EQ(from_field.grid.resolution_m, 0.5);
+  EXPECT_EQ(from_field.grid.resolution_m, 0.25);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "products/ortho_sources.tif"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "products/cutline.gpkg"));
 }

@@ -13,6 +13,7 @@
 #include "core/base/random.h"
 #include "core/gis/geotiff.h"
 #include "products/map_products.h"
+#include "products/map_rays.h"
 #include "products/photo_map/photo_light.h"
 #include "tests/products/patterned_survey.h"
 #include "tests/support/error_of.h"
@@ -149,6 +150,38 @@ TEST_F(PhotoOrthophotoTest, SaysWhereEachCellComesFrom) {
   EXPECT_EQ(counts[1], json["field_cells"].get<int64_t>());
   EXPECT_EQ(made.painted->cells, json["cells"].get<int64_t>());
   EXPECT_TRUE(std::filesystem::exists(folder_ / "products/cutline.gpkg"));
+}
+
+// The photos are laid on a finer surface, but maps of heights share their cells, and at most have those of the surface.
+TEST_F(PhotoOrthophotoTest, TheSurfaceModelHasTheCellsOfTheOtherHeightsAndNoHeightBetweenRoofAndGround) {
+  const survey::Survey survey = Ground::Write(folder_.path(), 0.5, false);
+  for (const auto& [stated_m, expected_m] : {std::pair{0.0, 0.5}, std::pair{0.1, 0.25}, std::pair{0.7, 0.7}}) {
+    ProductOptions options;
+    options.resolution_m = stated_m;
+    const MapProducts made = Make(survey, options);
+    ASSERT_TRUE(made.painted);
+    const gis::MapGrid planned = PlanHeightGrid(Info(), options);
+    const gis::ReducedRaster dsm = gis::ReadReduced(folder_ / "products/dsm.tif", 1 << 20);
+    EXPECT_EQ(planned.resolution_m, expected_m);
+    ASSERT_EQ(dsm.image.width, planned.width) << stated_m;
+    ASSERT_EQ(dsm.image.height, planned.height);
+    int64_t without = 0;
+    for (int y = 0; y < planned.height; ++y) {
+      for (int x = 0; x < planned.width; ++x) {
+        const double height_m = static_cast<double>(*dsm.image.At(x, y));
+        const Eigen::Vector2d place = planned.CellCentre(x, y);
+        if (!std::isfinite(height_m)) {
+          ++without;
+          continue;
+        }
+        const bool roof = std::abs(height_m - Ground::kRoof_m) < 1e-3;
+        EXPECT_TRUE(roof || std::abs(height_m - Ground::kGround_m) < 1e-3) << height_m;
+        const bool edge = Ground::InHouse(place.x(), place.y(), planned.resolution_m) && !Ground::InHouse(place.x(), place.y(), -planned.resolution_m);
+        EXPECT_TRUE(edge || roof == Ground::InHouse(place.x(), place.y())) << place.transpose();
+      }
+    }
+    EXPECT_LT(static_cast<double>(without), 0.3 * static_cast<double>(planned.size())) << stated_m;
+  }
 }
 
 TEST_F(PhotoOrthophotoTest, DoesNotShowWhatMoved) {

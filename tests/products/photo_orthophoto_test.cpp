@@ -176,7 +176,8 @@ TEST_F(PhotoOrthophotoTest, TheSurfaceModelHasTheCellsOfTheOtherHeightsAndNoHeig
         }
         const bool roof = std::abs(height_m - Ground::kRoof_m) < 1e-3;
         EXPECT_TRUE(roof || std::abs(height_m - Ground::kGround_m) < 1e-3) << height_m;
-        const bool edge = Ground::InHouse(place.x(), place.y(), planned.resolution_m) && !Ground::InHouse(place.x(), place.y(), -planned.resolution_m);
+        const bool edge =
+            Ground::InHouse(place.x(), place.y(), planned.resolution_m) && !Ground::InHouse(place.x(), place.y(), -planned.resolution_m);
         EXPECT_TRUE(edge || roof == Ground::InHouse(place.x(), place.y())) << place.transpose();
       }
     }

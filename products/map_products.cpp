@@ -139,7 +139,9 @@ void WriteFieldDsm(const scene::SceneInfo& info, const FieldMap& field, const gi
   const double scale = grid.resolution_m / field.grid.resolution_m;
   const double column_offset = (grid.left - field.grid.left) / field.grid.resolution_m;
   const double row_offset = (field.grid.top - grid.top) / field.grid.resolution_m;
-  const auto bound = [scale](double offset, int index, int limit) { return std::clamp(static_cast<int>(std::lround(offset + scale * index)), 0, limit); };
+  const auto bound = [scale](double offset, int index, int limit) {
+    return std::clamp(static_cast<int>(std::lround(offset + scale * index)), 0, limit);
+  };
   std::vector<float> rows;
   std::vector<float> finite;
   for (int first_row = 0; first_row < grid.height; first_row += gis::GeoTiffWriter::kTile) {
@@ -170,7 +172,8 @@ void WriteFieldDsm(const scene::SceneInfo& info, const FieldMap& field, const gi
 // The scene as it is seen straight down is the surface that the photos are laid on, so it is kept in memory. The surface model has cells of
 // dsm_grid, those of the other maps of heights.
 void PaintFromPhotos(const scene::SceneInfo& info, const RayCaster& caster, const std::optional<gis::Boundary>& boundary,
-                     const gis::MapGrid& dsm_grid, const ProductOptions& options, const MapPhotos& photos, const std::filesystem::path& folder, MapProducts* products) {
+                     const gis::MapGrid& dsm_grid, const ProductOptions& options, const MapPhotos& photos, const std::filesystem::path& folder,
+                     MapProducts* products) {
   const gis::MapGrid& grid = products->grid;
   FieldMap field{grid, std::vector<uint8_t>(4 * grid.size()), std::vector<float>(grid.size())};
   RenderCells(info, caster, boundary, options.min_opacity, "surface model", products, [&](int first_row, int /*n_rows*/, PaintedCells& band) {

@@ -22,8 +22,8 @@ gis::MapGrid PlanMapGrid(const scene::SceneInfo& info, const ProductOptions& opt
 // unless they are many or products.resolution_m is larger.
 gis::MapGrid PlanPhotoSurfaceGrid(const scene::SceneInfo& info, const ProductOptions& options);
 
-// Grid of the maps of heights: cells of products.resolution_m, but where the photos give the orthophoto its detail (products.ortho_source), none finer
-// than the surface that they are laid on, as heights come from the scene.
+// Grid of the maps of heights: cells of products.resolution_m, but where the photos give the orthophoto its detail (products.ortho_source), none
+// finer than the surface that they are laid on, as heights come from the scene.
 gis::MapGrid PlanHeightGrid(const scene::SceneInfo& info, const ProductOptions& options);
 
 // Rays of one map row, one per cell inside the scene's box. A ray begins at the top of the blocks at this cell and ends at their bottom.

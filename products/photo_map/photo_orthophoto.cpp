@@ -18,6 +18,7 @@
 #include "products/map_area.h"
 #include "products/map_rays.h"
 #include "products/photo_map/map_edge.h"
+#include "products/photo_map/painted_rows.h"
 #include "products/photo_map/photo_map.h"
 #include "products/place_metadata.h"
 
@@ -142,16 +143,18 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   const gis::MapGrid& grid = made.grid;
   const gis::MapProjection projection(info.origin, grid);
   const HeightGrid surface(field.grid, WithSharpSteps(field, threads));
-  PhotoMap map({.survey = survey,
-                .usable = usable,
-                .grid = grid,
-                .projection = projection,
-                .surface = surface,
-                .field_rgba = field.rgba,
-                .ground_z = ground_z,
-                .flown_height_m = FlownHeight(survey, ground_z),
-                .picture_bytes = memory},
-               threads);
+  const std::vector<float> slack_m = SightSlack_m(surface, threads);
+  const PhotoMapInput input{.survey = survey,
+                            .usable = usable,
+                            .grid = grid,
+                            .projection = projection,
+                            .surface = surface,
+                            .slack_m = slack_m,
+                            .field_rgba = field.rgba,
+                            .ground_z = ground_z,
+                            .flown_height_m = FlownHeight(survey, ground_z),
+                            .picture_bytes = memory};
+  PhotoMap map(input, threads);
   WarnOfFailures(map.failures(), n_usable);
   made.unreadable = static_cast<int>(map.failures().size());
   if (map.failures().size() == n_usable) {
@@ -167,6 +170,12 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
     return std::nullopt;
   }
 
+  std::optional<PaintedRows> painted;
+  if (grid.height > PhotoMap::kRows) painted.emplace(folder / "orthophoto.parts", PaintKey(input));
+  if (const int parts = painted ? painted->Count() : 0; parts > 0) {
+    base::LogInfo("goes on with the orthophoto that was interrupted: {} of {} parts are painted", parts,
+                  (grid.height + PhotoMap::kRows - 1) / PhotoMap::kRows);
+  }
   gis::GeoTiffWriter ortho(folder / "orthophoto.tif", OrthophotoSpec(info, grid, "Orthophoto"));
   gis::GeoTiffWriter sources(folder / "ortho_sources.tif", SourcesSpec(info, grid));
   base::Progress progress("orthophoto", static_cast<double>(grid.width) * grid.height, "cells");
@@ -174,7 +183,10 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   PhotoMapRows rows;
   for (int first_row = 0; first_row < grid.height; first_row += PhotoMap::kRows) {
     const int n_rows = std::min(PhotoMap::kRows, grid.height - first_row);
-    map.PaintRows(first_row, n_rows, threads, &rows);
+    if (!painted || !painted->Read(first_row, grid.Index(0, n_rows), &rows)) {
+      map.PaintRows(first_row, n_rows, threads, &rows);
+      if (painted) painted->Write(first_row, rows);
+    }
     gis::MapGrid part = grid;
     part.top -= first_row * grid.resolution_m;
     part.height = n_rows;
@@ -204,6 +216,7 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   made.field_cells = cells_of[kFromField];
   WriteSources(survey, made, cells_of, folder / "ortho_sources.json");
   WriteCutline(cutline.rings(), grid, folder / "cutline.gpkg");
+  if (painted) painted->Remove();
   return made;
 }
 

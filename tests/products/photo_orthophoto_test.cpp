@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/base/file.h"
 #include "core/base/json_text.h"
@@ -14,6 +15,7 @@
 #include "core/gis/geotiff.h"
 #include "products/map_products.h"
 #include "products/map_rays.h"
+#include "products/photo_map/painted_rows.h"
 #include "products/photo_map/photo_light.h"
 #include "tests/products/patterned_survey.h"
 #include "tests/support/error_of.h"
@@ -258,6 +260,66 @@ TEST_F(PhotoOrthophotoTest, ThreadsAndMemoryDoNotMatter) {
   for (const std::string& name : names) first[name] = base::ReadFile(folder_ / "products" / name);
   Make(survey, {}, 3, 1);
   for (const std::string& name : names) EXPECT_EQ(base::ReadFile(folder_ / "products" / name), first[name]) << name;
+}
+
+// A folder in the place of the last file stops the work when everything is painted.
+TEST_F(PhotoOrthophotoTest, PartsThatArePaintedAreNotPaintedAgain) {
+  const survey::Survey survey = Ground::Write(folder_.path(), 0.0, false);
+  ProductOptions options;
+  options.resolution_m = 0.042;
+  const std::filesystem::path parts = folder_ / "products/orthophoto.parts";
+  const std::filesystem::path in_the_way = folder_ / "products/cutline.gpkg";
+  std::filesystem::create_directories(in_the_way / "full");
+  EXPECT_THROW(Make(survey, options), std::exception);
+  ASSERT_TRUE(std::filesystem::exists(parts / "rows_0.bin"));
+  ASSERT_TRUE(std::filesystem::exists(parts / "rows_1024.bin"));
+  std::filesystem::remove_all(in_the_way);
+  // The second part is damaged, and the first is painted over, in a place that has nothing to do with the photos' colours.
+  base::WriteFileAtomically(parts / "rows_1024.bin", base::ReadFile(parts / "rows_1024.bin").substr(0, 1000));
+  const PaintedRows painted(parts, base::ReadFile(parts / "key.txt").substr(0, 16));
+  PhotoMapRows rows;
+  const gis::MapGrid planned = PlanMapGrid(Info(), options);
+  ASSERT_TRUE(painted.Read(0, planned.Index(0, PhotoMap::kRows), &rows));
+  const size_t marked = planned.Index(planned.width / 2, PhotoMap::kRows / 2);
+  rows.rgba[4 * marked] = 3;
+  rows.rgba[4 * marked + 1] = rows.rgba[4 * marked + 2] = 251;
+  painted.Write(0, rows);
+  testing::internal::CaptureStdout();
+  const MapProducts made = Make(survey, options);
+  const std::string log = testing::internal::GetCapturedStdout();
+  EXPECT_NE(log.find("2 of 2 parts"), std::string::npos) << log;
+  EXPECT_EQ(map_.At(planned.width / 2, PhotoMap::kRows / 2)[0], 3.0F);
+  EXPECT_LT(base::Quantile(Errors(made.grid), 0.999), 12.0);
+  EXPECT_FALSE(std::filesystem::exists(parts));
+}
+
+TEST_F(PhotoOrthophotoTest, PartsOfOtherPhotosArePaintedAgain) {
+  survey::Survey survey = Ground::Write(folder_.path(), 0.0, false);
+  const auto key = [&] {
+    const gis::MapGrid grid = PlanMapGrid(Info(), {});
+    const gis::MapProjection projection(Info().origin, grid);
+    const HeightGrid surface(grid, std::vector<float>(grid.size(), 1.0F));
+    const std::vector<char> usable(survey.photos.size(), 1);
+    return PaintKey(
+        {.survey = survey, .usable = usable, .grid = grid, .projection = projection, .surface = surface, .slack_m = {}, .field_rgba = {}});
+  };
+  const std::string first = key();
+  EXPECT_EQ(key(), first);
+  std::set<std::string> keys = {first};
+  image::SavePng(image::Image8(20, 20, 3, 7), folder_ / survey.photos[3].name);
+  keys.insert(key());
+  survey.photos[2].cam_from_enu.translation.x() += 1e-9;
+  keys.insert(key());
+  survey.cameras[0].params[0] += 1e-9;
+  keys.insert(key());
+  EXPECT_EQ(keys.size(), 4U);
+  const PaintedRows before(folder_ / "parts", first);
+  before.Write(0, {std::vector<uint8_t>(8, 1), std::vector<uint16_t>(2, 1)});
+  EXPECT_EQ(PaintedRows(folder_ / "parts", first).Count(), 1);
+  PhotoMapRows rows;
+  EXPECT_FALSE(before.Read(0, 3, &rows));
+  EXPECT_TRUE(before.Read(0, 2, &rows));
+  EXPECT_EQ(PaintedRows(folder_ / "parts", *keys.rbegin() == first ? *keys.begin() : *keys.rbegin()).Count(), 0);
 }
 
 TEST_F(PhotoOrthophotoTest, TheBorderIsCutWhereTwoPhotosSeeTheGroundAndMoreOnRequest) {

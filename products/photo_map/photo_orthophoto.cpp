@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "core/base/cancel.h"
 #include "core/base/file.h"
@@ -28,6 +29,7 @@ namespace {
 constexpr size_t kNamedFailures = 3;
 constexpr int kFewestViews = 2;     // of the ground inside the cutline
 constexpr double kStepCells = 9.0;  // heights of neighbouring cells that differ by more are a step: a roof's edge
+constexpr int kHoleCells = 60;      // from a cell without a surface to those with one
 
 // Heights of ground and roof meet in the cells between them, where the field shows neither. Each such cell is given to the nearer of the two, so that
 // no wall is drawn as a slope.
@@ -53,6 +55,35 @@ std::vector<float> WithSharpSteps(const FieldMap& field, base::ThreadPool& threa
     }
   });
   return sharp;
+}
+
+// The field has no surface in some cells, as in deep shadow between trees, but photos show what is there. A hole has heights within kHoleCells in all
+// four directions, and gets their mean, the nearer the more.
+void FillHoles(const gis::MapGrid& grid, std::vector<float>* height_m, base::ThreadPool& threads) {
+  const std::vector<float> given = *height_m;
+  threads.ParallelFor(grid.height, [&](int64_t task, int /*thread*/) {
+    const int row = static_cast<int>(task);
+    for (int column = 0; column < grid.width; ++column) {
+      if (std::isfinite(given[grid.Index(column, row)])) continue;
+      double weights = 0.0, sum = 0.0;
+      bool enclosed = true;
+      for (const auto& [step_x, step_y] : {std::pair{-1, 0}, std::pair{1, 0}, std::pair{0, -1}, std::pair{0, 1}}) {
+        bool found = false;
+        for (int n = 1; n <= kHoleCells && !found; ++n) {
+          const int x = column + n * step_x, y = row + n * step_y;
+          if (x < 0 || y < 0 || x >= grid.width || y >= grid.height) break;
+          const auto height = static_cast<double>(given[grid.Index(x, y)]);
+          found = std::isfinite(height);
+          if (!found) continue;
+          sum += height / n;
+          weights += 1.0 / n;
+        }
+        enclosed = enclosed && found;
+        if (!enclosed) break;
+      }
+      if (enclosed) (*height_m)[grid.Index(column, row)] = static_cast<float>(sum / weights);
+    }
+  });
 }
 
 std::vector<double> GroundHeights(const scene::SceneInfo& info, const FieldMap& field) {
@@ -142,7 +173,9 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   if (boundary) made.grid = CropTo(made.grid, *boundary);
   const gis::MapGrid& grid = made.grid;
   const gis::MapProjection projection(info.origin, grid);
-  const HeightGrid surface(field.grid, WithSharpSteps(field, threads));
+  std::vector<float> heights = WithSharpSteps(field, threads);
+  FillHoles(field.grid, &heights, threads);
+  const HeightGrid surface(field.grid, std::move(heights));
   const std::vector<float> slack_m = SightSlack_m(surface, threads);
   const PhotoMapInput input{.survey = survey,
                             .usable = usable,

@@ -91,7 +91,7 @@ class PhotoOrthophotoTest : public testing::Test {
   MapProducts Make(const survey::Survey& survey, const ProductOptions& options = {}, int n_threads = 2, size_t memory = size_t{1} << 30) {
     base::ThreadPool threads(n_threads);
     const MapPhotos photos{survey, memory, threads};
-    const MapProducts made = MakeMapProducts(Info(), Field, options, folder_ / "products", &photos);
+    const MapProducts made = MakeMapProducts(Info(), caster_, options, folder_ / "products", &photos);
     map_ = gis::ReadReduced(folder_ / "products/orthophoto.tif", 1 << 20).image;
     return made;
   }
@@ -116,6 +116,7 @@ class PhotoOrthophotoTest : public testing::Test {
   nlohmann::ordered_json Sources() const { return base::ParseJson(base::ReadFile(folder_ / "products/ortho_sources.json")); }
 
   TemporaryFolder folder_;
+  RayCaster caster_ = Field;
   image::ImageF map_;
 };
 
@@ -185,6 +186,19 @@ TEST_F(PhotoOrthophotoTest, TheSurfaceModelHasTheCellsOfTheOtherHeightsAndNoHeig
     }
     EXPECT_LT(static_cast<double>(without), 0.3 * static_cast<double>(planned.size())) << stated_m;
   }
+}
+
+TEST_F(PhotoOrthophotoTest, HolesOfTheSceneHaveWhatThePhotosShow) {
+  const survey::Survey survey = Ground::Write(folder_.path(), 0.5, false);
+  caster_ = [](std::span<const render::Ray> rays, std::span<render::RayColor> out) {
+    Field(rays, out);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      if ((rays[i].origin_enu.head<2>() - Eigen::Vector2d(-9.0, 6.0)).norm() < 2.0) out[i].opacity = 0.0F;
+    }
+  };
+  const MapProducts made = Make(survey);
+  ASSERT_TRUE(made.painted);
+  EXPECT_LT(base::Quantile(Errors(made.grid), 0.999), 10.0);
 }
 
 TEST_F(PhotoOrthophotoTest, DoesNotShowWhatMoved) {

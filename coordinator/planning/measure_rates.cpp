@@ -167,8 +167,8 @@ class TrialFolder {
 };
 
 std::vector<std::string> TrialPhotos(const std::filesystem::path& root, const Settings& settings, base::ThreadPool& threads) {
-  const std::vector<std::string> all = prepare::input::TakenNames(
-      prepare::input::ListInput(root, {.skip = {}, .masks = {}, .patterns = settings.prepare.photos}, threads));
+  const std::vector<std::string> all =
+      prepare::input::TakenNames(prepare::input::ListInput(root, {.skip = {}, .masks = {}, .patterns = settings.prepare.photos}, threads));
   const size_t n = std::min(all.size(), std::clamp(static_cast<size_t>(threads.size()), kFewestTrialPhotos, kMostTrialPhotos));
   std::vector<std::string> chosen;
   for (size_t i = 0; i < n; ++i) chosen.push_back(all[i * all.size() / n]);

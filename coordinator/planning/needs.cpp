@@ -15,12 +15,12 @@ namespace {
 
 constexpr double kProgramMemory = 256e6;
 // Bytes on disk.
-constexpr double kFeatureBytes = 152.0;      // of a feature in COLMAP's database: descriptor and place
-constexpr double kMatchBytes = 20e3;         // of a pair of photos
-constexpr double kMeshBytes = 150.0;         // of a cell of the surface, in all its files and the work folder
-constexpr double kTexelBytes = 2.0;          // of a texel, in all files
-constexpr double kMapBytes = 5.0;            // of a map cell, compressed: colours, heights, sources
-constexpr double kReportBytes = 1.5e6;       // of a photo in the report
+constexpr double kFeatureBytes = 152.0;  // of a feature in COLMAP's database: descriptor and place
+constexpr double kMatchBytes = 20e3;     // of a pair of photos
+constexpr double kMeshBytes = 150.0;     // of a cell of the surface, in all its files and the work folder
+constexpr double kTexelBytes = 2.0;      // of a texel, in all files
+constexpr double kMapBytes = 5.0;        // of a map cell, compressed: colours, heights, sources
+constexpr double kReportBytes = 1.5e6;   // of a photo in the report
 constexpr double kPairsOfPhoto = 8.4;
 
 double TrainingMemory(const WorkSize& size, const Settings& settings, int log2_table_size) {
@@ -79,13 +79,15 @@ void RequireRoom(const Needs& needs, const Room& room, const std::filesystem::pa
                            "B (run.memory_gb). Raise --memory, use fewer ranks per machine or fewer threads, or a smaller train.batch_samples");
   }
   if (needs.disk > room.disk) {
-    throw base::InputError(folder, "has " + base::FormatCount(room.disk) + "B of free disk, but this run needs about " + base::FormatCount(needs.disk) + "B",
+    throw base::InputError(folder,
+                           "has " + base::FormatCount(room.disk) + "B of free disk, but this run needs about " + base::FormatCount(needs.disk) + "B",
                            "Make room, choose a folder on a larger disk, or a smaller --image-width");
   }
   if (needs.memory > room.memory_limit) {
-    base::LogWarning("a block with the largest tables would need {}B of memory, the limit is {}B (run.memory_gb): partition may make one that is refused. "
-                     "Lower partition.max_log2_table_size or raise --memory",
-                     base::FormatCount(needs.memory), base::FormatCount(room.memory_limit));
+    base::LogWarning(
+        "a block with the largest tables would need {}B of memory, the limit is {}B (run.memory_gb): partition may make one that is refused. "
+        "Lower partition.max_log2_table_size or raise --memory",
+        base::FormatCount(needs.memory), base::FormatCount(room.memory_limit));
   }
 }
 

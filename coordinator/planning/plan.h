@@ -37,9 +37,9 @@ struct Plan {
 struct PlanRequest {
   double within_s = 0.0;
   double used_s = 0.0;
-  std::vector<std::string> stages;                                               // that are still to be done, in their order
-  Settings settings = {};                                                        // before any of `reductions`
-  std::vector<Reduction> reductions = {};                                        // that may still be made, in the order in which they give way
+  std::vector<std::string> stages;         // that are still to be done, in their order
+  Settings settings = {};                  // before any of `reductions`
+  std::vector<Reduction> reductions = {};  // that may still be made, in the order in which they give way
   // Predicted; 0: not made. "train" is not asked for.
   std::function<double(const std::string& stage, const Settings& settings)> seconds;
   std::optional<double> fixed_training_s;  // the user gave the training time or steps: it is taken as it is

@@ -12,11 +12,11 @@
 namespace skyquilt::coordinator {
 namespace {
 
-constexpr std::array<double, 19> kUsualMinutes = {1,  2,  3,   5,   7,   10,  15,  20,  30,   45,
-                                                  60, 90, 120, 180, 240, 360, 480, 720, 1440};
+constexpr std::array<double, 19> kUsualMinutes = {1, 2, 3, 5, 7, 10, 15, 20, 30, 45, 60, 90, 120, 180, 240, 360, 480, 720, 1440};
 
 double UsualFrom(double seconds) {
-  const auto found = std::find_if(kUsualMinutes.begin(), kUsualMinutes.end(), [seconds](double minutes) { return 60.0 * minutes >= 0.999 * seconds; });
+  const auto found =
+      std::find_if(kUsualMinutes.begin(), kUsualMinutes.end(), [seconds](double minutes) { return 60.0 * minutes >= 0.999 * seconds; });
   return 60.0 * (found == kUsualMinutes.end() ? kUsualMinutes.back() : *found);
 }
 
@@ -35,15 +35,15 @@ std::string PlanText(const Plan& plan) {
 }
 
 std::string NeedsText(const Needs& needs, const Room& room) {
-  return fmt::format("memory for training {}B of {}B, disk {}B of {}B that are free", base::FormatCount(needs.memory), base::FormatCount(room.memory_limit),
-                     base::FormatCount(needs.disk), base::FormatCount(room.disk));
+  return fmt::format("memory for training {}B of {}B, disk {}B of {}B that are free", base::FormatCount(needs.memory),
+                     base::FormatCount(room.memory_limit), base::FormatCount(needs.disk), base::FormatCount(room.disk));
 }
 
 nlohmann::ordered_json PlanJson(const Plan& plan) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const PlannedStage& stage : plan.stages) stages[stage.name] = stage.seconds;
-  return {{"within_s", plan.within_s},      {"used_s", plan.used_s},       {"end_s", plan.EndS()},
-          {"training_s", plan.training_s}, {"stages", stages},            {"given_up", TextsOf(plan.reductions)},
+  return {{"within_s", plan.within_s},     {"used_s", plan.used_s}, {"end_s", plan.EndS()},
+          {"training_s", plan.training_s}, {"stages", stages},      {"given_up", TextsOf(plan.reductions)},
           {"feasible", plan.feasible}};
 }
 

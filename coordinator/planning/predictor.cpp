@@ -10,21 +10,21 @@ namespace skyquilt::coordinator {
 namespace {
 
 // Where no comment says otherwise, fitted to the stages' times in docs/benchmarks.md ("Poses", "Surface", "Buildings"), two threads.
-constexpr double kPairsPerPhoto = 8.4;       // Seneca, Brighton Beach and simulated flights have 7.9 to 8.5
-constexpr double kAllPairsBelow = 30.0;      // photos; prepare::poses::PairRules
-constexpr double kVerifiedPairs = 75.0;      // per second and thread
-constexpr double kPlacedPhotos = 5.0;        // per second and thread: poses by tags and matches, adjustment
-constexpr double kUntaggedPoses = 3.0;       // times as long: more pairs, COLMAP's mapper
+constexpr double kPairsPerPhoto = 8.4;   // Seneca, Brighton Beach and simulated flights have 7.9 to 8.5
+constexpr double kAllPairsBelow = 30.0;  // photos; prepare::poses::PairRules
+constexpr double kVerifiedPairs = 75.0;  // per second and thread
+constexpr double kPlacedPhotos = 5.0;    // per second and thread: poses by tags and matches, adjustment
+constexpr double kUntaggedPoses = 3.0;   // times as long: more pairs, COLMAP's mapper
 constexpr double kFirstPicture_s = 2.0;
-constexpr double kStageStart_s = 1.0;        // reading survey and scene, writing small files
-constexpr double kShortRays = 3.0;           // times as fast as rays from a photo: of texels, which begin just before the surface
-constexpr double kMapRays = 2.0;             // the same: of map cells, which begin at the top of the blocks
-constexpr double kMostFineMapCells = 8e6;    // as in products/map_products.cpp
-constexpr double kTexelLevels = 4.0 / 3.0;   // coarser tiles have a quarter of the texels each
-constexpr double kWallShare = 1.3;           // surface per ground
-constexpr double kMeshCells = 0.25e6;        // voxels of the surface per second and thread: fusion, mesh, files
-constexpr double kReportPhotos = 1.5;        // pictures of a photo written per second and thread
-constexpr double kBuildingCells = 0.5e6;     // cells of the surface per second and thread
+constexpr double kStageStart_s = 1.0;       // reading survey and scene, writing small files
+constexpr double kShortRays = 3.0;          // times as fast as rays from a photo: of texels, which begin just before the surface
+constexpr double kMapRays = 2.0;            // the same: of map cells, which begin at the top of the blocks
+constexpr double kMostFineMapCells = 8e6;   // as in products/map_products.cpp
+constexpr double kTexelLevels = 4.0 / 3.0;  // coarser tiles have a quarter of the texels each
+constexpr double kWallShare = 1.3;          // surface per ground
+constexpr double kMeshCells = 0.25e6;       // voxels of the surface per second and thread: fusion, mesh, files
+constexpr double kReportPhotos = 1.5;       // pictures of a photo written per second and thread
+constexpr double kBuildingCells = 0.5e6;    // cells of the surface per second and thread
 constexpr double kMostCorrection = 6.0;
 constexpr double kOwnShare = 0.7, kOtherShare = 0.3;  // of the logarithm of a stage's ratio
 constexpr double kLeastTold_s = 1.0;
@@ -37,7 +37,8 @@ double Squared(double x) {
 
 Predictor::Kind Predictor::KindOf(const std::string& stage) {
   if (stage == "prepare") return Kind::kPoses;
-  return stage == "products" || stage == "surface" || stage == "buildings" || stage == "tour" || stage == "evaluate" ? Kind::kRendering : Kind::kOther;
+  return stage == "products" || stage == "surface" || stage == "buildings" || stage == "tour" || stage == "evaluate" ? Kind::kRendering
+                                                                                                                     : Kind::kOther;
 }
 
 double Predictor::RaySeconds(double rays) const {
@@ -124,7 +125,8 @@ double Predictor::EvaluateSeconds(const Settings& settings) const {
   const double scored = std::min(most, size_.held_out);
   const double pixels = scored * size_.PixelsAt(options.image_width > 0 ? options.image_width : settings.run.image_width);
   const double pictures = std::min(scored, static_cast<double>(options.report_photos)) / (kReportPhotos * size_.threads);
-  double seconds = 2.0 * kStageStart_s + pictures + RaySeconds(pixels * (options.field_normals ? 2.0 : 1.0)) + pixels / std::max(1.0, rates_.scored_pixels);
+  double seconds =
+      2.0 * kStageStart_s + pictures + RaySeconds(pixels * (options.field_normals ? 2.0 : 1.0)) + pixels / std::max(1.0, rates_.scored_pixels);
   if (size_.truth) seconds += 0.5 * pixels / std::max(1.0, rates_.scored_pixels);  // floaters, and the mesh against the true surface
   return seconds;
 }

@@ -14,6 +14,7 @@ class Predictor {
  public:
   Predictor(const WorkSize& size, const Rates& rates) : size_(size), rates_(rates) {}
 
+  const WorkSize& size() const { return size_; }
   WorkSize& size() { return size_; }
   Rates& rates() { return rates_; }
 

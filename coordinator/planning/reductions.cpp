@@ -76,8 +76,8 @@ class ReductionList {
     larger("surface.texel_gsd", options.texel_gsd, texel);
     if (changes.empty()) return;
     Add("surface detail", "surface",
-        fmt::format("a coarser surface: voxels of {:g}, views of {:g} and texels of {:g} ground sampling distances", std::max(voxel, options.voxel_gsd),
-                    std::max(view, options.view_gsd), std::max(texel, options.texel_gsd)),
+        fmt::format("a coarser surface: voxels of {:g}, views of {:g} and texels of {:g} ground sampling distances",
+                    std::max(voxel, options.voxel_gsd), std::max(view, options.view_gsd), std::max(texel, options.texel_gsd)),
         std::move(changes));
   }
 

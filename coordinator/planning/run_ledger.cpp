@@ -17,8 +17,13 @@ nlohmann::json RecordJson(const StageRecord& record) {
   nlohmann::json changes = nlohmann::json::array();
   for (const config::Override& change : record.changes) changes.push_back({change.key, change.value});
   const auto number = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr); };
-  return {{"stage", record.stage},   {"planned_s", number(record.planned_s)}, {"predicted_s", number(record.predicted_s)}, {"took_s", record.took_s},
-          {"begun", record.begun}, {"done", record.done},                   {"changes", changes}};
+  return {{"stage", record.stage},
+          {"planned_s", number(record.planned_s)},
+          {"predicted_s", number(record.predicted_s)},
+          {"took_s", record.took_s},
+          {"begun", record.begun},
+          {"done", record.done},
+          {"changes", changes}};
 }
 
 StageRecord RecordFromJson(const nlohmann::json& json) {
@@ -29,7 +34,8 @@ StageRecord RecordFromJson(const nlohmann::json& json) {
   record.took_s = json.at("took_s").get<double>();
   record.begun = json.at("begun").get<bool>();
   record.done = json.at("done").get<bool>();
-  for (const nlohmann::json& change : json.at("changes")) record.changes.push_back({change.at(0).get<std::string>(), change.at(1).get<std::string>()});
+  for (const nlohmann::json& change : json.at("changes"))
+    record.changes.push_back({change.at(0).get<std::string>(), change.at(1).get<std::string>()});
   return record;
 }
 
@@ -46,7 +52,6 @@ RunLedger::RunLedger(const Project& project, Clock clock, double save_every_s)
     for (const nlohmann::json& one : json.at("given_up")) {
       given_up_.push_back({one.at("what").get<std::string>(), one.at("stage").get<std::string>(), one.at("text").get<std::string>()});
     }
-    resumes_ = std::any_of(stages_.begin(), stages_.end(), [](const StageRecord& record) { return record.begun; });
   } catch (const nlohmann::json::exception& error) {
     // Results of stages that were made with less than the settings ask for are then refused, with the differences; --restart is the way out.
     base::LogWarning("{}: is damaged ({}). The time that earlier runs used is not known and does not count", file.string(), error.what());
@@ -170,7 +175,6 @@ void RunLedger::Forget() {
   stages_.clear();
   given_up_.clear();
   used_before_s_ = 0.0;
-  resumes_ = false;
   std::filesystem::remove(FileOf(project_));
 }
 

@@ -41,7 +41,6 @@ class RunLedger {
   RunLedger(const RunLedger&) = delete;
   RunLedger& operator=(const RunLedger&) = delete;
 
-  bool Resumes() const { return resumes_; }  // an earlier run had begun a stage
   // Time passes from here on.
   void Start();
   double UsedSeconds() const;  // earlier runs included
@@ -73,7 +72,7 @@ class RunLedger {
   mutable std::mutex mutex_;  // guards all below but the thread
   std::condition_variable wake_;
   std::thread saver_;
-  bool ends_ = false, started_ = false, resumes_ = false;
+  bool ends_ = false, started_ = false;
   double used_before_s_ = 0.0, start_s_ = 0.0, settled_s_ = 0.0;
   std::string running_;  // stage
   std::vector<StageRecord> stages_;

@@ -77,7 +77,8 @@ WorkSize CountPhotos(const std::filesystem::path& photos, const std::filesystem:
                      const std::filesystem::path& project_folder, base::ThreadPool& threads) {
   const QuietLog quiet;
   const prepare::input::InputFolder folders = prepare::input::FindInputs(photos, model, settings.prepare.masks);
-  const prepare::input::ListOptions list{.skip = {project_folder}, .masks = folders.masks.given, .patterns = settings.prepare.photos};
+  prepare::input::ListOptions list{.skip = {}, .masks = folders.masks.given, .patterns = settings.prepare.photos};
+  if (!project_folder.empty()) list.skip.push_back(std::filesystem::absolute(project_folder));
   WorkSize size;
   std::vector<std::string> names;
   for (const prepare::input::InputFile& file : prepare::input::ListInput(folders.photo_root, list, threads)) {

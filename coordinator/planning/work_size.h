@@ -37,7 +37,7 @@ struct WorkSize {
 };
 
 // What the photo folder tells before anything is done: their number, sizes and some tags; the area and the blocks are guessed. project_folder: not
-// searched for photos. Throws base::InputError when there are no photos.
+// searched for photos; may be empty. Throws base::InputError when there are no photos.
 WorkSize CountPhotos(const std::filesystem::path& photos, const std::filesystem::path& model, const Settings& settings,
                      const std::filesystem::path& project_folder, base::ThreadPool& threads);
 // Replaces the guesses by what a prepared survey tells, and by its blocks.

@@ -47,11 +47,10 @@ Plan MakePlan(const PlanRequest& request) {
   const double planned_s = kPlannedShare * std::max(0.0, request.within_s - request.used_s);
   PlanTimes times = TimesOf(request, settings);
   const auto left_s = [&] { return std::max(0.0, planned_s - times.before_s); };
-  const auto fits = [&] {
-    if (!trains) return times.after_s <= planned_s + kRounding_s;
-    const double training = request.fixed_training_s.value_or(kTrainingShare * left_s());
-    return training > 0.0 && times.after_s + training <= left_s() + kRounding_s;
+  const auto least_training_s = [&] {
+    return request.fixed_training_s.value_or(std::max(kTrainingShare * left_s(), kLeastTrainingOfTotal * request.within_s));
   };
+  const auto fits = [&] { return trains ? times.after_s + least_training_s() <= left_s() + kRounding_s : times.after_s <= planned_s + kRounding_s; };
   for (const Reduction& reduction : request.reductions) {
     if (fits()) break;
     Settings less = settings;

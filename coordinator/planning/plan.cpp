@@ -63,8 +63,7 @@ Plan MakePlan(const PlanRequest& request) {
   }
   plan.feasible = fits();
   if (trains) {
-    plan.training_s =
-        request.fixed_training_s.value_or(std::max({kTrainingShare * left_s(), left_s() - times.after_s, kLeastTrainingOfTotal * request.within_s}));
+    plan.training_s = request.fixed_training_s.value_or(std::max(least_training_s(), left_s() - times.after_s));
   }
   for (const std::string& stage : request.stages) {
     const double seconds = stage == "train" ? plan.training_s : request.seconds(stage, settings);

@@ -59,7 +59,8 @@ double Predictor::PrepareSeconds(const Settings& settings) const {
   const double speedup = size_.Speedup();
   const double searched = size_.PixelsAt(std::min(settings.prepare.max_image_size, std::max(1, size_.photo_width)));
   seconds += n * searched / (std::max(1.0, rates_.feature_pixels) * speedup);
-  const double pairs = n < kAllPairsBelow ? 0.5 * n * (n - 1.0) : kPairsPerPhoto * n;
+  const double most = std::min(n, kAllPairsBelow - 1.0);
+  const double pairs = std::max(0.5 * most * (most - 1.0), n < kAllPairsBelow ? 0.0 : kPairsPerPhoto * n);
   const double features = std::min(4096, settings.prepare.max_features);
   double matching = pairs * Squared(features / 4096.0) / (std::max(1e-3, rates_.matched_pairs) * speedup);
   matching += pairs / (kVerifiedPairs * size_.threads) + n / (kPlacedPhotos * size_.threads);

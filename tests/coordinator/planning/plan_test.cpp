@@ -136,7 +136,10 @@ TEST(Plan, GivesUpTheVideoFirst) {
 
 TEST(Plan, WhatSavesNothingStays) {
   PlanRequest request = Request(60.0, 100, {});
-  request.seconds = [](const std::string& stage, const Settings& s) { return stage == "surface" && s.surface.enabled ? 1000.0 : 1.0; };
+  request.seconds = [](const std::string& stage, const Settings& s) {
+    if (stage == "surface") return s.surface.enabled ? 1000.0 : 0.0;
+    return 1.0;
+  };
   const Plan plan = MakePlan(request);
   ASSERT_EQ(plan.reductions.size(), 1U);
   EXPECT_EQ(plan.reductions.front().what, "surface");

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
+
 namespace skyquilt::coordinator {
 namespace {
 
@@ -35,11 +37,13 @@ TEST(Predictor, UsualRatesGiveTheTimesThatWereMeasured) {
   EXPECT_LT(seneca.Seconds("surface", settings), 690.0);
 }
 
+// Not for "products": the surface below the orthophoto is finer where it is small.
 RC_GTEST_PROP(PredictorProperty, MorePhotosTakeLonger, ()) {
   const int few = *rc::gen::inRange(3, 2000), more = few + *rc::gen::inRange(1, 2000);
   Settings settings;
   settings.tour.auto_stops = 3;
   for (const char* stage : kAll) {
+    if (std::string(stage) == "products") continue;
     const double a = Predictor(Flight(few), Rates::Usual(2)).Seconds(stage, settings),
                  b = Predictor(Flight(more), Rates::Usual(2)).Seconds(stage, settings);
     RC_ASSERT(a > 0.0);

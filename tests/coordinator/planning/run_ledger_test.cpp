@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <memory>
+#include <thread>
 
 #include "core/base/file.h"
 #include "tests/support/temporary_folder.h"
@@ -103,10 +105,9 @@ TEST_F(LedgerOfRun, ForgetsForARestart) {
 TEST(RunLedger, SavesByItselfWhileAStageRuns) {
   const TemporaryFolder folder;
   const Project project{folder.path()};
-  double now_s = 0.0;
+  const double now_s = 0.0;
   RunLedger ledger(
       project, [&now_s] { return now_s; }, 0.01);
-  now_s = 0.0;
   ledger.Start();
   ledger.Begin("train", 100.0, {});
   const std::filesystem::path file = RunLedger::FileOf(project);

@@ -21,6 +21,7 @@ nlohmann::json RecordJson(const StageRecord& record) {
           {"planned_s", number(record.planned_s)},
           {"predicted_s", number(record.predicted_s)},
           {"took_s", record.took_s},
+          {"decided", record.decided},
           {"begun", record.begun},
           {"done", record.done},
           {"changes", changes}};
@@ -32,6 +33,7 @@ StageRecord RecordFromJson(const nlohmann::json& json) {
   record.planned_s = base::NanIfNull(json.at("planned_s"));
   record.predicted_s = base::NanIfNull(json.at("predicted_s"));
   record.took_s = json.at("took_s").get<double>();
+  record.decided = json.at("decided").get<bool>();
   record.begun = json.at("begun").get<bool>();
   record.done = json.at("done").get<bool>();
   for (const nlohmann::json& change : json.at("changes"))
@@ -143,15 +145,20 @@ void RunLedger::Settle() {
   settled_s_ = now;
 }
 
-void RunLedger::Begin(const std::string& stage, double predicted_s, const std::vector<config::Override>& changes) {
+void RunLedger::Decide(const std::string& stage, double predicted_s, const std::vector<config::Override>& changes) {
+  const std::lock_guard lock(mutex_);
+  StageRecord& record = Entry(stage);
+  if (record.decided) return;
+  record.predicted_s = predicted_s;
+  record.changes = changes;
+  record.decided = true;
+  Save();
+}
+
+void RunLedger::Begin(const std::string& stage) {
   const std::lock_guard lock(mutex_);
   Settle();
-  StageRecord& record = Entry(stage);
-  if (!record.begun) {
-    record.predicted_s = predicted_s;
-    record.changes = changes;
-  }
-  record.begun = true;
+  Entry(stage).begun = true;
   running_ = stage;
   Save();
 }

@@ -19,10 +19,10 @@ namespace skyquilt::coordinator {
 struct StageRecord {
   std::string stage;
   double planned_s = evaluate::kNotMeasured;    // by the first plan
-  double predicted_s = evaluate::kNotMeasured;  // when it began
+  double predicted_s = evaluate::kNotMeasured;  // when it was decided
   double took_s = 0.0;                          // earlier runs included
-  bool begun = false, done = false;
-  std::vector<config::Override> changes;  // of options, decided when it began
+  bool decided = false, begun = false, done = false;
+  std::vector<config::Override> changes;  // of options
 };
 
 struct GivenUp {
@@ -51,8 +51,10 @@ class RunLedger {
   std::vector<GivenUp> AllGivenUp() const;
 
   void SetPlanned(const std::string& stage, double seconds);  // the first value stays
-  // A stage begins, perhaps once more. changes: kept when it has begun before.
-  void Begin(const std::string& stage, double predicted_s, const std::vector<config::Override>& changes);
+  // The first decision stays.
+  void Decide(const std::string& stage, double predicted_s, const std::vector<config::Override>& changes);
+  // A stage begins, perhaps once more.
+  void Begin(const std::string& stage);
   void End(const std::string& stage);
   // Replaces what was given up for this stage.
   void SetGivenUp(const std::string& stage, const std::vector<GivenUp>& given_up);

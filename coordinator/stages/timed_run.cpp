@@ -64,7 +64,7 @@ TimedRun::TimedRun(Pipeline& pipeline, RunLedger::Clock clock)
       predictor_(SizeOfRanks(pipeline, {}), Rates::Usual(pipeline.settings.run.UsableThreads())) {
   if (pipeline.restart) ledger_.Forget();
   for (const StageRecord& record : ledger_.Stages()) {
-    if (record.begun) ApplyTo(pipeline, record.changes);
+    ApplyTo(pipeline, record.changes);
   }
   pipeline.settings.run.budget_has_everything = !training_is_given_;
   if (pipeline.level_settings) pipeline.level_settings->run.budget_has_everything = !training_is_given_;
@@ -77,9 +77,9 @@ void TimedRun::ApplyTo(Pipeline& pipeline, const std::vector<config::Override>& 
   }
 }
 
-bool TimedRun::HasBegun(const Pipeline& pipeline, const std::string& stage) const {
+bool TimedRun::IsDecided(const Pipeline& pipeline, const std::string& stage) const {
   if (pipeline.restart) return false;
-  return ledger_.Of(stage).begun || LoadStamp(pipeline.project, stage).has_value();
+  return ledger_.Of(stage).decided || LoadStamp(pipeline.project, stage).has_value();
 }
 
 bool TimedRun::IsDone(const Pipeline& pipeline, const std::string& stage) const {
@@ -98,7 +98,7 @@ Plan TimedRun::PlanFrom(const Pipeline& pipeline, const std::string& first) cons
   PlanRequest request{.within_s = within_s_, .used_s = ledger_.UsedSeconds(), .stages = Remaining(pipeline, first), .settings = pipeline.settings};
   if (!training_is_given_) request.settings.run.time_budget_s = 0.0;
   for (Reduction& reduction : ReductionsOf(pipeline.settings, predictor_.size())) {
-    if (IndexOf(reduction.stage) >= IndexOf(first) && !HasBegun(pipeline, reduction.stage)) request.reductions.push_back(std::move(reduction));
+    if (IndexOf(reduction.stage) >= IndexOf(first) && !IsDecided(pipeline, reduction.stage)) request.reductions.push_back(std::move(reduction));
   }
   request.seconds = [this](const std::string& stage, const Settings& settings) { return predictor_.Seconds(stage, settings); };
   const StageRecord train = ledger_.Of("train");
@@ -119,7 +119,7 @@ void TimedRun::Start(Pipeline& pipeline, const std::filesystem::path& photos, co
   base::ThreadPool threads(pipeline.settings.run.threads);
   predictor_.size() = SizeOfRanks(pipeline, CountPhotos(photos, model, pipeline.settings, pipeline.project.folder, threads));
   const bool poses = !IsDone(pipeline, "prepare"), trains = !IsDone(pipeline, "train");
-  if (!HasBegun(pipeline, "prepare")) CheckRoom(pipeline);
+  if (!IsDecided(pipeline, "prepare")) CheckRoom(pipeline);
   if (trains) {
     const RateSource source{
         .photos = photos, .model = model, .work_folder = pipeline.project.StateFolder() / "trial", .poses = poses, .photos_to_decode = true};
@@ -159,39 +159,39 @@ void TimedRun::LookAtProject(Pipeline& pipeline, const std::string& stage) {
 }
 
 void TimedRun::Decide(Pipeline& pipeline, const std::string& stage) {
-  decision_ = {.stage = stage, .predicted_s = 0.0, .changes = {}};
-  if (HasBegun(pipeline, stage)) return;
+  if (IsDecided(pipeline, stage)) return;
   LookAtProject(pipeline, stage);
   const Plan plan = PlanFrom(pipeline, stage);
-  std::vector<GivenUp> given_up;
+  std::vector<config::Override> changes;
   std::vector<Reduction> now;
   for (const Reduction& reduction : plan.reductions) {
     if (IndexOf(reduction.stage) <= IndexOf(stage)) now.push_back(reduction);
-  }
-  for (const Reduction& reduction : now) {
-    decision_.changes.insert(decision_.changes.end(), reduction.changes.begin(), reduction.changes.end());
-    given_up.push_back({reduction.what, stage, reduction.text});
   }
   if (!training_is_given_ && stage == "partition") {
     // Only how many blocks can be trained follows from it.
     ApplyTo(pipeline, {{"run.time_budget_s", fmt::format("{:.3f}", plan.training_s)}});
   }
   if (!training_is_given_ && stage == "train") {
-    decision_.changes.push_back({"run.time_budget_s", fmt::format("{:.3f}", plan.training_s)});
+    changes.push_back({"run.time_budget_s", fmt::format("{:.3f}", plan.training_s)});
     const WorkSize& size = predictor_.size();
     const int workers = std::max(1, std::min(size.ranks - 1, size.blocks));
     const double most = kLeastBlocksShare * plan.training_s * workers / size.blocks;
     if (pipeline.settings.run.shortest_block_s > most) {
-      decision_.changes.push_back({"run.shortest_block_s", fmt::format("{:.3f}", std::max(kLeastBlock_s, most))});
-      given_up.push_back({"blocks", stage,
-                          fmt::format("{} blocks train for {} each at least (run.shortest_block_s)", size.blocks,
-                                      base::FormatDuration(std::max(kLeastBlock_s, most)))});
+      const double least_s = std::max(kLeastBlock_s, most);
+      now.push_back({"blocks", stage,
+                     fmt::format("{} blocks train for {} each at least (run.shortest_block_s)", size.blocks, base::FormatDuration(least_s)),
+                     {{"run.shortest_block_s", fmt::format("{:.3f}", least_s)}}});
     }
   }
-  ApplyTo(pipeline, decision_.changes);
+  std::vector<GivenUp> given_up;
+  for (const Reduction& reduction : now) {
+    changes.insert(changes.end(), reduction.changes.begin(), reduction.changes.end());
+    given_up.push_back({reduction.what, stage, reduction.text});
+  }
+  ApplyTo(pipeline, changes);
   const PlannedStage* planned = plan.Find(stage);
-  decision_.predicted_s = planned == nullptr ? 0.0 : planned->seconds;
   ledger_.SetGivenUp(stage, given_up);
+  ledger_.Decide(stage, planned == nullptr ? 0.0 : planned->seconds, changes);
   for (const std::string& text : TextsOf(now)) base::LogWarning("for {} in all: {}", base::FormatDuration(within_s_), text);
   if (!plan.feasible && planned != nullptr) {
     base::LogWarning("{} of {} are used, and the rest is predicted to end after {}", base::FormatDuration(plan.used_s),
@@ -200,7 +200,7 @@ void TimedRun::Decide(Pipeline& pipeline, const std::string& stage) {
 }
 
 void TimedRun::Began(const std::string& stage) {
-  ledger_.Begin(stage, decision_.stage == stage ? decision_.predicted_s : evaluate::kNotMeasured, decision_.changes);
+  ledger_.Begin(stage);
 }
 
 void TimedRun::Ended(Pipeline& pipeline, const std::string& stage) {
@@ -210,7 +210,7 @@ void TimedRun::Ended(Pipeline& pipeline, const std::string& stage) {
   if (before) return;
   const StageRecord record = ledger_.Of(stage);
   predictor_.Correct(stage, record.predicted_s, record.took_s);
-  base::LogInfo("{} took {}, predicted were {}; {} of {} are used", stage, base::FormatDuration(record.took_s),
+  base::LogInfo("{} took {} (predicted: {}); {} of {} are used", stage, base::FormatDuration(record.took_s),
                 base::FormatDuration(record.predicted_s), base::FormatDuration(ledger_.UsedSeconds()), base::FormatDuration(within_s_));
 }
 

@@ -27,7 +27,7 @@ class TimedRun {
   // From here on time passes. Counts the photos, measures the machine, and logs the first plan. Throws base::UsageError and base::InputError when
   // memory or disk cannot be enough, base::InputError without photos.
   void Start(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model);
-  // Before a stage is looked at: decides its options, unless it has begun before.
+  // Before a stage is looked at: decides its options, once.
   void Decide(Pipeline& pipeline, const std::string& stage);
   // Around a stage that is made.
   void Began(const std::string& stage);
@@ -40,12 +40,7 @@ class TimedRun {
   static RunLedger::Clock SystemClock();
 
  private:
-  struct Decision {
-    std::string stage;
-    double predicted_s = 0.0;
-    std::vector<config::Override> changes;
-  };
-  bool HasBegun(const Pipeline& pipeline, const std::string& stage) const;
+  bool IsDecided(const Pipeline& pipeline, const std::string& stage) const;
   bool IsDone(const Pipeline& pipeline, const std::string& stage) const;
   // From `first` on, without what is done.
   std::vector<std::string> Remaining(const Pipeline& pipeline, const std::string& first) const;
@@ -60,7 +55,6 @@ class TimedRun {
   bool training_is_given_;  // by the user: its time or its steps
   bool rays_measured_ = false;
   Predictor predictor_;
-  Decision decision_;
 };
 
 // Where the settings ask for a total time: makes pipeline.timed, which RunStages follows. Call it before results are compared with the settings.

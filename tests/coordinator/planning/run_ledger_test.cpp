@@ -39,10 +39,12 @@ TEST_F(LedgerOfRun, TheTimeOfEarlierRunsCounts) {
     first->Start();
     first->SetPlanned("prepare", 8.0);
     now_s_ += 2.0;
-    first->Begin("prepare", 9.0, {{"prepare.max_features", "2048"}});
+    first->Decide("prepare", 9.0, {{"prepare.max_features", "2048"}});
+    first->Begin("prepare");
     now_s_ += 5.0;
     first->End("prepare");
-    first->Begin("train", 60.0, {{"run.time_budget_s", "58.000"}});
+    first->Decide("train", 60.0, {{"run.time_budget_s", "58.000"}});
+    first->Begin("train");
     first->SetGivenUp("train", {{"previews", "train", "no previews"}});
     now_s_ += 20.0;
   }
@@ -59,7 +61,8 @@ TEST_F(LedgerOfRun, TheTimeOfEarlierRunsCounts) {
   EXPECT_TRUE(train.begun && !train.done && std::isnan(train.planned_s));
   EXPECT_EQ(train.took_s, 20.0);
   // Beginning once more keeps what was decided.
-  second->Begin("train", 30.0, {});
+  second->Decide("train", 30.0, {});
+  second->Begin("train");
   now_s_ += 4.0;
   second->End("train");
   EXPECT_EQ(second->Of("train").took_s, 24.0);
@@ -91,7 +94,8 @@ TEST_F(LedgerOfRun, ForgetsForARestart) {
   {
     const auto ledger = Open();
     ledger->Start();
-    ledger->Begin("prepare", 1.0, {});
+    ledger->Decide("prepare", 1.0, {});
+    ledger->Begin("prepare");
     now_s_ += 2.0;
   }
   const auto ledger = Open();
@@ -109,7 +113,8 @@ TEST(RunLedger, SavesByItselfWhileAStageRuns) {
   RunLedger ledger(
       project, [&now_s] { return now_s; }, 0.01);
   ledger.Start();
-  ledger.Begin("train", 100.0, {});
+  ledger.Decide("train", 100.0, {});
+  ledger.Begin("train");
   const std::filesystem::path file = RunLedger::FileOf(project);
   std::filesystem::remove(file);
   for (int i = 0; i < 500 && !std::filesystem::exists(file); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));

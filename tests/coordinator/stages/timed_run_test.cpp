@@ -21,10 +21,12 @@ class TimedRuns : public ProjectFixture {
         project_, [this] { return now_s_; }, 0.0);
     ledger.Start();
     ledger.SetGivenUp("prepare", {{"features", "prepare", "fewer features"}});
-    ledger.Begin("prepare", 10.0, {{"prepare.max_features", "2048"}});
+    ledger.Decide("prepare", 10.0, {{"prepare.max_features", "2048"}});
+    ledger.Begin("prepare");
     now_s_ += 12.0;
     ledger.End("prepare");
-    ledger.Begin("train", 40.0, {{"run.time_budget_s", "38.500"}});
+    ledger.Decide("train", 40.0, {{"run.time_budget_s", "38.500"}});
+    ledger.Begin("train");
     now_s_ += 8.0;
   }
   Pipeline Begun(double within_s) const {

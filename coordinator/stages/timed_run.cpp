@@ -178,7 +178,8 @@ void TimedRun::Decide(Pipeline& pipeline, const std::string& stage) {
     const double most = kLeastBlocksShare * plan.training_s * workers / size.blocks;
     if (pipeline.settings.run.shortest_block_s > most) {
       const double least_s = std::max(kLeastBlock_s, most);
-      now.push_back({"blocks", stage,
+      now.push_back({"blocks",
+                     stage,
                      fmt::format("{} blocks train for {} each at least (run.shortest_block_s)", size.blocks, base::FormatDuration(least_s)),
                      {{"run.shortest_block_s", fmt::format("{:.3f}", least_s)}}});
     }
@@ -210,8 +211,8 @@ void TimedRun::Ended(Pipeline& pipeline, const std::string& stage) {
   if (before) return;
   const StageRecord record = ledger_.Of(stage);
   predictor_.Correct(stage, record.predicted_s, record.took_s);
-  base::LogInfo("{} took {} (predicted: {}); {} of {} are used", stage, base::FormatDuration(record.took_s),
-                base::FormatDuration(record.predicted_s), base::FormatDuration(ledger_.UsedSeconds()), base::FormatDuration(within_s_));
+  base::LogInfo("{} took {} (predicted: {}); {} of {} are used", stage, base::FormatDuration(record.took_s), base::FormatDuration(record.predicted_s),
+                base::FormatDuration(ledger_.UsedSeconds()), base::FormatDuration(within_s_));
 }
 
 evaluate::RunTimes TimedRun::Times() const {

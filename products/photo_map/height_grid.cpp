@@ -18,12 +18,11 @@ constexpr double kSlackCells = 1.5;        // of any surface
 constexpr double kSlackPerRoughness = 3.0;
 constexpr int kRoughStride = 4;  // cells between those of the 3 x 3 that a side's roughness is measured by
 
-// Root mean square distance of 3 x 3 heights from their plane; the given cell is in the corner of those cells. Infinite beside the grid's border and
-// where there is no surface.
+// Root mean square distance of 3 x 3 heights from their plane; the given cell is in the corner of those cells. Zero beside the border of the grid or
+// of the surface, where they are not all known.
 double RoughnessOfSide(const HeightGrid& surface, int column, int row, int stride_x, int stride_y) {
-  const double none = std::numeric_limits<double>::infinity();
   const int last_column = column + 2 * stride_x, last_row = row + 2 * stride_y;
-  if (last_column < 0 || last_row < 0 || last_column >= surface.grid().width || last_row >= surface.grid().height) return none;
+  if (last_column < 0 || last_row < 0 || last_column >= surface.grid().width || last_row >= surface.grid().height) return 0.0;
   std::array<double, 9> heights{};
   double mean = 0.0, slope_x = 0.0, slope_y = 0.0;
   for (int y = 0; y < 3; ++y) {
@@ -42,7 +41,7 @@ double RoughnessOfSide(const HeightGrid& surface, int column, int row, int strid
       squares += off * off;
     }
   }
-  return std::isfinite(squares) ? std::sqrt(squares / 6.0) : none;  // 9 heights, 3 of them for the plane
+  return std::isfinite(squares) ? std::sqrt(squares / 6.0) : 0.0;  // 9 heights, 3 of them for the plane
 }
 
 }  // namespace
@@ -198,14 +197,14 @@ bool HeightGrid::IsVisible(const Eigen::Vector3d& place, const Eigen::Vector3d& 
 std::vector<float> SightSlack_m(const HeightGrid& surface, base::ThreadPool& threads) {
   const gis::MapGrid& grid = surface.grid();
   const double least_m = kSlackCells * grid.resolution_m;
-  std::vector<float> slack_m(grid.size(), static_cast<float>(least_m));
+  std::vector<float> slack_m(grid.size());
   threads.ParallelFor(grid.height, [&](int64_t task, int /*thread*/) {
     const int row = static_cast<int>(task);
     for (int column = 0; column < grid.width; ++column) {
       double plainest_m = std::numeric_limits<double>::infinity();
       for (const auto& [side_x, side_y] : {std::pair{-1, -1}, std::pair{1, -1}, std::pair{-1, 1}, std::pair{1, 1}})
         plainest_m = std::min(plainest_m, RoughnessOfSide(surface, column, row, side_x * kRoughStride, side_y * kRoughStride));
-      if (std::isfinite(plainest_m)) slack_m[grid.Index(column, row)] = static_cast<float>(least_m + kSlackPerRoughness * plainest_m);
+      slack_m[grid.Index(column, row)] = static_cast<float>(least_m + kSlackPerRoughness * plainest_m);
     }
   });
   return slack_m;

@@ -5,7 +5,7 @@ import json
 from harness import digest, expect, kill_group, main, metrics_of, small_survey, wait_for
 
 QUICK = ["--blocks", "1x2", "--image-width", "160", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096", "--set",
-         "partition.max_log2_table_size=13", "--set", "products.video_seconds=1", "--set", "evaluate.max_photos=2"]
+         "partition.max_log2_table_size=14", "--set", "products.video_seconds=1", "--set", "evaluate.max_photos=2"]
 
 
 def ledger_of(project):

@@ -19,7 +19,9 @@ TEST(TimeSection, ComparesWhatWasPredictedWithWhatHappened) {
                            .stages = {{.stage = "train", .planned_s = 500.0, .predicted_s = 600.0, .took_s = 480.0}, {.stage = "evaluate"}},
                            .given_up = {"no video (products.video_seconds)", "<cells>"}};
   const std::string html = TimeSection(metrics);
-  for (const char* part : {"20 min", "15 min", "train", "+25 %", "evaluate", "no video (products.video_seconds)", "&lt;cells&gt;"}) {
+  EXPECT_NE(html.find(ShownDuration(1200.0)), std::string::npos) << html;
+  EXPECT_NE(html.find(ShownDuration(900.0)), std::string::npos) << html;
+  for (const char* part : {"train", "+25 %", "evaluate", "no video (products.video_seconds)", "&lt;cells&gt;"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part << "\n" << html;
   }
 }

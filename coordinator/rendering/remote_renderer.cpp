@@ -43,6 +43,7 @@ RemoteRenderer::RemoteRenderer(comm::Communicator& comm, const std::string& setu
 void RemoteRenderer::Begin(const scene::FieldStore& store, const render::RaySegments& segments) {
   store_ = &store;
   segments_ = &segments;
+  splitter_.emplace(segments);
   const std::vector<GroupMember> members = group_.WaitForRanks();
   std::vector<int> ranks;
   std::vector<double> memory;
@@ -114,7 +115,7 @@ void RemoteRenderer::AddChunk(Work& work, size_t group) {
     int owner = anyone;
     if (members.ranks.size() > 1) {
       segments.clear();
-      segments_->Split(work.rays[i], &segments);
+      splitter_->Split(work.rays[i], &segments);
       // Every rank has the context. The owner of the first block on the ray starts it, so that the ray is passed on less often.
       const auto first = std::find_if(segments.begin(), segments.end(), [&](const auto& segment) { return !segments_->Blocks(segment.set).empty(); });
       if (first != segments.end()) owner = OwnerOf(members.owner, segments_->Blocks(first->set), anyone);

@@ -53,12 +53,12 @@ TEST(GroundIndex, CostsLittleAmongManyBlocks) {
   const GroundIndex index(PointersTo(blocks));
   std::vector<int> found;
   index.Find({.origin_enu = {2050.0, 1950.0, 300.0}, .direction_enu = {0, 0, -1}}, {0.0, kInfinity}, &found);
-  EXPECT_LE(found.size(), 4U);
+  EXPECT_LE(found.size(), 9U);
   EXPECT_TRUE(std::ranges::count(found, 40 * 19 + 20) == 1);
   // A ray of a photo, as far as it is at the heights of the blocks.
   const Ray slanted{.origin_enu = {2050.0, 1950.0, 120.0}, .direction_enu = Eigen::Vector3d(0.5, 0.3, -0.8).normalized()};
   index.Find(slanted, index.HeightInterval(slanted), &found);
-  EXPECT_LE(found.size(), 8U);
+  EXPECT_LE(found.size(), 16U);
   // The whole survey along its middle.
   index.Find({.origin_enu = {-10.0, 2050.0, 5.0}, .direction_enu = {1, 0, 0}}, {0.0, kInfinity}, &found);
   EXPECT_LE(found.size(), 3U * 40U);

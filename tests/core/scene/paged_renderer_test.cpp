@@ -105,7 +105,9 @@ TEST_P(PagedRendererTest, LittleMemoryGivesTheSameBits) {
     EXPECT_TRUE(SameBits(render::FinalColor(in_flight[i].state), whole[i])) << i;
   }
   EXPECT_LE(small.peak_bytes(), enough);
-  EXPECT_GT(small.loads(), kRows * kColumns + 1) << "blocks are loaded again when they are needed";
+  // Rays through opaque blocks end before they come to one that was unloaded.
+  const bool opaque = std::get<2>(GetParam()) > 0.0;
+  if (!opaque) EXPECT_GT(small.loads(), kRows * kColumns + 1) << "blocks are loaded again when they are needed";
 }
 
 TEST_P(PagedRendererTest, ManyOwnersGiveTheSameBits) {

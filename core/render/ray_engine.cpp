@@ -13,6 +13,7 @@
 #include "core/render/density_normal.h"
 #include "core/render/footprint.h"
 #include "core/render/sample_marcher.h"
+#include "core/render/scratch_pool.h"
 
 namespace skyquilt::render {
 namespace {
@@ -55,7 +56,7 @@ class RayRenderer::Group {
     batch_of_.assign(all_.size(), kNoBatch);
     scratch_of_.resize(all_.size());
     for (size_t k = 0; k < all_.size(); ++k) {
-      if (all_[k]->field) scratch_of_[k] = ScratchFor(*all_[k]->field);
+      if (all_[k]->field) scratch_of_[k] = scratch_.For(*all_[k]->field);
     }
   }
 
@@ -88,21 +89,8 @@ class RayRenderer::Group {
   }
 
  private:
-  // Sizes that field::Activations depends on.
-  struct ScratchShape {
-    int64_t hidden = 0, density_rows = 0, color_inputs = 0, color_layers = 0;
-    bool operator==(const ScratchShape&) const = default;
-  };
-
-  size_t ScratchFor(const field::HashField& f) {
-    const ScratchShape shape{f.config().hidden, f.DensityHiddenRows(), f.ColorInputRows(), f.config().color_hidden_layers};
-    const auto same = std::find_if(scratch_.begin(), scratch_.end(), [&](const auto& one) { return one.first == shape; });
-    if (same != scratch_.end()) return static_cast<size_t>(same - scratch_.begin());
-    scratch_.emplace_back(shape, field::Activations{}).second.Reserve(f, field::kChunk);
-    return scratch_.size() - 1;
-  }
   const TrainedField& FieldOf(const FieldBatch& batch) const { return *all_[batch.field]; }
-  const field::Activations& ScratchOf(const FieldBatch& batch) const { return scratch_[scratch_of_[batch.field]].second; }
+  const field::Activations& ScratchOf(const FieldBatch& batch) const { return scratch_[scratch_of_[batch.field]]; }
   FieldBatch& BatchOf(const Sample& sample) { return batches_[batch_of_[static_cast<size_t>(sample.field)]]; }
   const FieldBatch& BatchOf(const Sample& sample) const { return batches_[batch_of_[static_cast<size_t>(sample.field)]]; }
 
@@ -372,8 +360,7 @@ class RayRenderer::Group {
   std::vector<FieldBatch> batches_;
   size_t in_use_ = 0;             // first batches that have a field
   std::vector<size_t> batch_of_;  // per field; kNoBatch: the rays do not meet it
-  // One for all fields of the same shape, as only one field is evaluated at a time.
-  std::vector<std::pair<ScratchShape, field::Activations>> scratch_;
+  ScratchPool scratch_;
   std::vector<size_t> scratch_of_;  // per field that is loaded
   field::DensitySlope slope_;
   std::vector<Sample> samples_;

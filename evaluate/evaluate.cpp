@@ -47,8 +47,8 @@ std::vector<photos::RoofArea> FlatRoofsOf(const survey::Survey& survey) {
 std::unique_ptr<surface::SurfaceScorer> SurfaceOf(const EvaluateInput& input) {
   if (!std::filesystem::is_regular_file(input.project_folder / "surface" / "surface.json")) return nullptr;
   try {
-    std::vector<skyquilt::surface::TexturedTile> tiles = skyquilt::surface::LoadFinestTiles(input.project_folder / "cache" / "surface");
-    return tiles.empty() ? nullptr : std::make_unique<surface::SurfaceScorer>(std::move(tiles));
+    const std::vector<std::filesystem::path> tiles = skyquilt::surface::FinestTileFiles(input.project_folder / "cache" / "surface");
+    return tiles.empty() ? nullptr : std::make_unique<surface::SurfaceScorer>(surface::SurfaceMesh::FromFiles(tiles));
   } catch (const base::InputError& error) {
     throw base::InputError(error.file(), "is damaged, or cannot be read", "Run 'skyquilt surface' again with --restart");
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "core/survey/survey.h"
@@ -23,6 +24,7 @@ double TrainingPixels(const survey::Survey& survey, int image_width);
 
 // Pixels are estimated with 16 x 12 rays per photo, image borders included (trapezoid rule). A box that none of these rays hits is projected
 // instead and counts with the rectangle around its corners. image_width: training width in pixels, 0 = full size. Result in the order of `boxes`.
-std::vector<BoxVisibility> FindVisibility(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width);
+// Of more than few_boxes only those near a photo's footprint are asked, with the same result.
+std::vector<BoxVisibility> FindVisibility(const survey::Survey& survey, const std::vector<Box>& boxes, int image_width, size_t few_boxes = 64);
 
 }  // namespace skyquilt::partition

@@ -6,8 +6,6 @@
 namespace skyquilt::products {
 namespace {
 
-constexpr size_t kBatchRays = 1 << 16;
-
 uint8_t ToByte(float display_value) {
   return static_cast<uint8_t>(std::lround(255.0F * std::clamp(display_value, 0.0F, 1.0F)));
 }
@@ -18,7 +16,7 @@ void CellPainter::Add(const render::Ray& ray, size_t cell, double start_m, Paint
   rays_.push_back(ray);
   cell_.push_back(cell);
   start_m_.push_back(start_m);
-  if (rays_.size() == kBatchRays) Finish(cells);
+  if (rays_.size() == rays_per_call_) Finish(cells);
 }
 
 void CellPainter::Finish(PaintedCells* cells) {

@@ -17,8 +17,9 @@ struct PaintedCells {
 
 class CellPainter {
  public:
-  // Keeps a reference to the caster. min_opacity: cells with a lower opacity stay as they are.
-  CellPainter(const RayCaster& caster, double min_opacity) : caster_(caster), min_opacity_(min_opacity) {}
+  // Keeps a reference to the caster. min_opacity: cells with a lower opacity stay as they are. rays_per_call: of the caster, at least 1.
+  CellPainter(const RayCaster& caster, double min_opacity, size_t rays_per_call = RaysPerCall(1))
+      : caster_(caster), min_opacity_(min_opacity), rays_per_call_(rays_per_call) {}
 
   // The place of the surface becomes start_m - depth along the ray. Renders when many rays wait; Finish renders the rest, before other cells follow.
   void Add(const render::Ray& ray, size_t cell, double start_m, PaintedCells* cells);
@@ -29,6 +30,7 @@ class CellPainter {
  private:
   const RayCaster& caster_;
   double min_opacity_;
+  size_t rays_per_call_;
   int64_t painted_ = 0;
   // Rays that wait to be rendered, and the cells their results belong to.
   std::vector<render::Ray> rays_;

@@ -40,16 +40,21 @@ gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const scene::MapHeights& 
   return spec;
 }
 
+struct MapCaster {
+  const RayCaster& caster;
+  size_t rays_per_call;
+};
+
 // One ray per cell of the products' grid, whose number they get. write_rows(first_row, n_rows, cells) gets the rows in order and may change them.
 template <typename WriteRows>
-void RenderCells(const scene::SceneInfo& info, const RayCaster& caster, const std::optional<gis::Boundary>& boundary, double min_opacity,
+void RenderCells(const scene::SceneInfo& info, const MapCaster& casting, const std::optional<gis::Boundary>& boundary, double min_opacity,
                  const char* what, MapProducts* products, const WriteRows& write_rows) {
   const gis::MapGrid& grid = products->grid;
   const MapRayGenerator generator(info, grid);
   base::Progress progress(what, static_cast<double>(grid.width) * grid.height, "cells");
   PaintedCells band;  // consecutive rows of both maps, written together
   MapRays row_rays;
-  CellPainter painter(caster, min_opacity);
+  CellPainter painter(casting.caster, min_opacity, casting.rays_per_call);
   for (int first_row = 0; first_row < grid.height; first_row += gis::GeoTiffWriter::kTile) {
     base::ThrowIfCancelled();
     const int n_rows = std::min(gis::GeoTiffWriter::kTile, grid.height - first_row);
@@ -94,13 +99,13 @@ class DsmWriter {
 };
 
 // Both maps as the scene shows them, some rows in memory at a time.
-void RenderToFiles(const scene::SceneInfo& info, const RayCaster& caster, const std::optional<gis::Boundary>& boundary, const ProductOptions& options,
-                   MapProducts* products) {
+void RenderToFiles(const scene::SceneInfo& info, const MapCaster& casting, const std::optional<gis::Boundary>& boundary,
+                   const ProductOptions& options, MapProducts* products) {
   std::optional<gis::GeoTiffWriter> ortho;
   std::optional<DsmWriter> dsm;
   if (options.ortho) ortho.emplace(products->orthophoto, OrthophotoSpec(info, products->grid, "Orthophoto"));
   if (options.dsm) dsm.emplace(info, products->grid, options, products->dsm);
-  RenderCells(info, caster, boundary, options.min_opacity, options.ortho ? "orthophoto" : "surface model", products,
+  RenderCells(info, casting, boundary, options.min_opacity, options.ortho ? "orthophoto" : "surface model", products,
               [&](int first_row, int n_rows, PaintedCells& band) {
                 if (ortho) ortho->WriteRows(first_row, n_rows, std::span<const uint8_t>(band.rgba));
                 if (dsm) dsm->WriteRows(first_row, n_rows, &band.place);
@@ -171,12 +176,12 @@ void WriteFieldDsm(const scene::SceneInfo& info, const FieldMap& field, const gi
 
 // The scene as it is seen straight down is the surface that the photos are laid on, so it is kept in memory. The surface model has cells of
 // dsm_grid, those of the other maps of heights.
-void PaintFromPhotos(const scene::SceneInfo& info, const RayCaster& caster, const std::optional<gis::Boundary>& boundary,
+void PaintFromPhotos(const scene::SceneInfo& info, const MapCaster& casting, const std::optional<gis::Boundary>& boundary,
                      const gis::MapGrid& dsm_grid, const ProductOptions& options, const MapPhotos& photos, const std::filesystem::path& folder,
                      MapProducts* products) {
   const gis::MapGrid& grid = products->grid;
   FieldMap field{grid, std::vector<uint8_t>(4 * grid.size()), std::vector<float>(grid.size())};
-  RenderCells(info, caster, boundary, options.min_opacity, "surface model", products, [&](int first_row, int /*n_rows*/, PaintedCells& band) {
+  RenderCells(info, casting, boundary, options.min_opacity, "surface model", products, [&](int first_row, int /*n_rows*/, PaintedCells& band) {
     const auto begin = static_cast<std::ptrdiff_t>(grid.Index(0, first_row));
     std::copy(band.rgba.begin(), band.rgba.end(), field.rgba.begin() + 4 * begin);
     std::transform(band.place.begin(), band.place.end(), field.height_m.begin() + begin,
@@ -209,7 +214,8 @@ void LogMaps(const MapProducts& made, const std::filesystem::path& folder) {
 }
 
 MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options, const std::filesystem::path& folder,
-                            const MapPhotos* photos) {
+                            const MapPhotos* photos, size_t rays_per_call) {
+  const MapCaster casting{caster, rays_per_call};
   MapProducts products;
   const bool from_photos = options.ortho && photos != nullptr && options.ortho_source == "photos";
   products.grid = from_photos ? PlanPhotoSurfaceGrid(info, options) : PlanMapGrid(info, options);
@@ -227,9 +233,9 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
   if (options.ortho) products.orthophoto = folder / "orthophoto.tif";
   if (options.dsm) products.dsm = folder / "dsm.tif";
   if (from_photos) {
-    PaintFromPhotos(info, caster, boundary, dsm_grid, options, *photos, folder, &products);
+    PaintFromPhotos(info, casting, boundary, dsm_grid, options, *photos, folder, &products);
   } else {
-    RenderToFiles(info, caster, boundary, options, &products);
+    RenderToFiles(info, casting, boundary, options, &products);
   }
   if (products.painted) {
     products.grid = products.painted->grid;
@@ -244,7 +250,8 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
 
 MapProducts MakeMapProducts(const scene::Scene& scene, const ProductOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads,
                             const MapPhotos* photos) {
-  return MakeMapProducts(scene.info(), CasterOf(scene, AppearanceOf(options.exposure, scene.info()), threads), options, folder, photos);
+  return MakeMapProducts(scene.info(), CasterOf(scene, AppearanceOf(options.exposure, scene.info()), threads), options, folder, photos,
+                         RaysPerCall(scene.statistics().ranks));
 }
 
 }  // namespace skyquilt::products

@@ -40,11 +40,12 @@ struct MapPhotos {
 // Of the memory that the program may use: a quarter, and no more than photos of neighbouring tiles need.
 size_t PictureMemory(double limit_bytes);
 
-// Writes into `folder`, which is created. photos: null when there are none; they are used if options.ortho_source says so. Deterministic. For a scene
+// Writes into `folder`, which is created. photos: null when there are none; they are used if options.ortho_source says so. rays_per_call: of the
+// caster (see RaysPerCall), which changes no bit. Deterministic. For a scene
 // without geo-reference the files have no CRS, with a warning. Files are complete or absent. Throws base::UsageError (see PlanMapGrid),
 // base::InputError when a file cannot be written, and base::Interrupted.
 MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options, const std::filesystem::path& folder,
-                            const MapPhotos* photos = nullptr);
+                            const MapPhotos* photos = nullptr, size_t rays_per_call = RaysPerCall(1));
 MapProducts MakeMapProducts(const scene::Scene& scene, const ProductOptions& options, const std::filesystem::path& folder, base::ThreadPool& threads,
                             const MapPhotos* photos = nullptr);
 // One line about the size of the maps, and what the orthophoto was made from.

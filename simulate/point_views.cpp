@@ -3,6 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 namespace skyquilt::simulate {
@@ -21,6 +24,32 @@ PointViews::PointViews(const World& world, const camera::Camera& camera, const s
     for (const double y : {0.0, static_cast<double>(camera.height)}) cos_corner = std::min(cos_corner, camera.RayFromImg({x, y}).z());
   }
   cos_half_view_ = cos_corner - 1e-3;
+  constexpr double kFlattest = 0.999;  // sine of the angle from straight down, about 87 degrees: flatter photos count as seeing everything
+  const double half_view = std::acos(std::clamp(cos_half_view_, -1.0, 1.0));
+  double widest = 0.0;  // angle from straight down
+  highest_m_ = -std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < views_.size(); ++i) {
+    widest = std::max(widest, half_view + std::acos(std::clamp(-views_[i].axis.z(), -1.0, 1.0)));
+    highest_m_ = std::max(highest_m_, views_[i].centre.z());
+    by_east_.push_back(static_cast<uint32_t>(i));
+  }
+  reach_ = std::sin(std::min(widest, std::numbers::pi / 2.0)) < kFlattest ? std::tan(widest) : std::numeric_limits<double>::infinity();
+  std::sort(by_east_.begin(), by_east_.end(), [&](uint32_t a, uint32_t b) { return views_[a].centre.x() < views_[b].centre.x(); });
+}
+
+void PointViews::FindNear(const Vector3d& place, std::vector<uint32_t>* found) const {
+  found->clear();
+  if (!std::isfinite(reach_)) {
+    for (size_t i = 0; i < views_.size(); ++i) found->push_back(static_cast<uint32_t>(i));
+    return;
+  }
+  const double reach_m = 0.01 + 1.001 * reach_ * std::max(0.0, highest_m_ - place.z());
+  const auto from =
+      std::lower_bound(by_east_.begin(), by_east_.end(), place.x() - reach_m, [&](uint32_t i, double x) { return views_[i].centre.x() < x; });
+  for (auto at = from; at != by_east_.end() && views_[*at].centre.x() <= place.x() + reach_m; ++at) {
+    if (std::abs(views_[*at].centre.y() - place.y()) <= reach_m) found->push_back(*at);
+  }
+  std::sort(found->begin(), found->end());
 }
 
 bool PointViews::HiddenByCar(size_t photo, const Vector3f& direction, float far_m) const {
@@ -47,7 +76,9 @@ std::vector<uint32_t> PointViews::Seeing(const Vector3f& position, const Vector3
     n = 0;
     rays.valid.fill(0);
   };
-  for (size_t i = 0; i < views_.size(); ++i) {
+  thread_local std::vector<uint32_t> near;
+  FindNear(point, &near);
+  for (const size_t i : near) {
     const Vector3d to_camera = views_[i].centre - point;
     const double distance = to_camera.norm();
     if (-to_camera.dot(views_[i].axis) < cos_half_view_ * distance) continue;

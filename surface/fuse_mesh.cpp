@@ -27,6 +27,17 @@ constexpr double kLargestGrowth = 3.0;       // of voxels when the memory is sho
 constexpr double kOffPlaneVoxels = 3.0;      // of the border of a hole that is closed in its plane
 constexpr double kLevelIslandVoxels = 12.0;  // edge of the smallest square piece that is kept where photos look level
 
+// The whole mesh is joined, cleaned and cut into tiles in memory. At most as many copies of it exist at a time: pieces and what they are joined to,
+// or the mesh, its edges and its tiles.
+constexpr double kMeshCopies = 3.0;
+constexpr double kLargestMeshGrowth = 8.0;  // of voxels when the whole mesh does not fit
+constexpr double kLeastStep = 1.15, kLargestStep = 2.0;
+
+// Thrown while pieces are fused; how many times the memory that meshes may take the whole mesh will need.
+struct MeshTooLarge {
+  double times = 1.0;
+};
+
 int FloorDivide(int value, int by) {
   return value >= 0 ? value / by : -((by - 1 - value) / by);
 }
@@ -131,6 +142,8 @@ void CutToBoundary(const SurfaceInput& input, std::vector<MeshTile>* tiles) {
 std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& views, const Plan& plan, base::ThreadPool& threads) {
   std::filesystem::create_directories(input.work_folder / "pieces");
   std::vector<MeshTile> all;
+  double bytes = 0.0;
+  size_t done = 0;
   base::Progress progress("surface mesh", static_cast<double>(plan.pieces.size()), "pieces");
   for (const LatticeBox& piece : plan.pieces) {
     base::ThrowIfCancelled();
@@ -142,9 +155,14 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
       SimplifyTiles(&tiles, kSimplifyVoxels * plan.fuse.voxel_m, threads);
       SaveMeshTiles(tiles, file);
     }
+    for (const MeshTile& tile : tiles) bytes += MeshBytes(tile.mesh);
     std::move(tiles.begin(), tiles.end(), std::back_inserter(all));
     views.ReleasePages();
     progress.Advance();
+    ++done;
+    if (const double times = kMeshCopies * bytes / (input.mesh_bytes > 0.0 ? input.mesh_bytes : 0.5 * input.memory_bytes); times > 1.0) {
+      throw MeshTooLarge{times * static_cast<double>(plan.pieces.size()) / static_cast<double>(done)};
+    }
   }
   // In an order that does not depend on the pieces.
   std::sort(all.begin(), all.end(), [](const MeshTile& a, const MeshTile& b) { return a.id < b.id; });
@@ -152,7 +170,35 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
   return all;
 }
 
+// With larger voxels where the whole mesh would not fit into the memory limit: a survey's mesh grows with its area.
+std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads, Plan* plan) {
+  for (double voxel = voxel_m;;) {
+    *plan = MakePlan(input, views, voxel, threads);
+    try {
+      return FusePieces(input, views, *plan, threads);
+    } catch (const MeshTooLarge& found) {
+      // Triangles are as many as voxels on the surface, so they go with the square.
+      voxel = plan->fuse.voxel_m * std::clamp(std::sqrt(found.times), kLeastStep, kLargestStep);
+      if (voxel > kLargestMeshGrowth * voxel_m) {
+        throw TooLittleMemory(fmt::format(
+            "--memory: {}B are too small for the mesh of the whole survey, even in voxels of {:.3g} m. Give more memory, choose larger voxels with "
+            "surface.voxel_gsd, or a part of the survey with products.boundary",
+            base::FormatCount(input.memory_bytes), plan->fuse.voxel_m));
+      }
+      base::LogWarning(
+          "the surface is fused again in voxels of {:.3g} m instead of {:.3g} m, because the mesh of the whole survey would not fit into the memory "
+          "limit; a larger --memory, with --restart, gives the finer surface",
+          voxel, voxel_m);
+    }
+  }
+}
+
 }  // namespace
+
+double MeshBytes(const Mesh& mesh) {
+  constexpr size_t kVertex = sizeof(Eigen::Vector3d) + sizeof(uint64_t) + 2;
+  return static_cast<double>(mesh.key.size() * kVertex + mesh.triangle.size() * sizeof(Triangle));
+}
 
 std::vector<MeshTile> SplitAlongLattice(const Mesh& mesh, int tile_voxels) {
   // The four cells around a lattice edge reach from its lower node to one less in both directions across it, so the largest cell of any three of them
@@ -192,11 +238,11 @@ std::vector<MeshTile> SplitAlongLattice(const Mesh& mesh, int tile_voxels) {
 }
 
 FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
-  const Plan plan = MakePlan(input, views, voxel_m, threads);
+  Plan plan;
+  std::vector<MeshTile> tiles = FuseWithinMemory(input, views, voxel_m, threads, &plan);
   FusedMesh result;
   result.voxel_m = plan.fuse.voxel_m;
   result.tile_size_m = kTileVoxels * plan.fuse.voxel_m;
-  std::vector<MeshTile> tiles = FusePieces(input, views, plan, threads);
   const bool any = !tiles.empty();  // also when the boundary left nothing of them
   double error_m = 0.0;
   std::vector<Mesh> meshes;

@@ -12,7 +12,7 @@
 namespace skyquilt::surface {
 
 struct FusedMesh {
-  double voxel_m = 0.0;  // larger than asked for where a piece would not fit in memory
+  double voxel_m = 0.0;  // larger than asked for where a piece, or the whole mesh, would not fit in memory
   double tile_size_m = 0.0;
   std::vector<MeshTile> tiles;  // level 0, sorted; empty: no surface was seen
   EdgeCounts edges;
@@ -24,8 +24,12 @@ struct FusedMesh {
 inline constexpr int kTileVoxels = 256;
 
 // Finished pieces are kept in input.work_folder and not computed again. The result does not depend on the memory limit as long as the voxel stays the
-// same. Throws base::UsageError when even three times larger voxels need too much memory, or when the boundary leaves nothing of the surface.
+// same. Throws base::UsageError when even three times larger voxels (eight times for the whole mesh) need too much memory, or when the boundary
+// leaves nothing of the surface.
 FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads);
+
+// Bytes that a mesh takes.
+double MeshBytes(const Mesh& mesh);
 
 // Cuts the mesh of a piece along the lattice: each triangle belongs to the tile of the lattice edge that it crosses, whatever the piece. Only for
 // meshes straight from FusePiece.

@@ -210,15 +210,19 @@ SurfaceResult MakeSurface(const SurfaceInput& input, base::ThreadPool& threads) 
   return SurfaceBuilder(input, threads).Make();
 }
 
-std::vector<TexturedTile> LoadFinestTiles(const fs::path& work_folder) {
+std::vector<fs::path> FinestTileFiles(const fs::path& work_folder) {
   std::set<fs::path> files;
   if (fs::is_directory(TextureFolder(work_folder))) {
     for (const fs::directory_entry& entry : fs::directory_iterator(TextureFolder(work_folder))) {
       if (IsFinest(entry.path())) files.insert(entry.path());
     }
   }
+  return {files.begin(), files.end()};
+}
+
+std::vector<TexturedTile> LoadFinestTiles(const fs::path& work_folder) {
   std::vector<TexturedTile> tiles;
-  for (const fs::path& file : files) tiles.push_back(std::move(LoadBakedTile(file).tile));
+  for (const fs::path& file : FinestTileFiles(work_folder)) tiles.push_back(std::move(LoadBakedTile(file).tile));
   return tiles;
 }
 

@@ -26,7 +26,8 @@ struct SurfaceResult {
 // base::InputError, base::Interrupted.
 SurfaceResult MakeSurface(const SurfaceInput& input, base::ThreadPool& threads);
 
-// The textured tiles of level 0 of a finished surface, for scores; empty when there is none.
+// The textured tiles of level 0 of a finished surface, for scores; empty when there is none. Their files, each for LoadBakedTile, or all in memory.
+std::vector<std::filesystem::path> FinestTileFiles(const std::filesystem::path& work_folder);
 std::vector<TexturedTile> LoadFinestTiles(const std::filesystem::path& work_folder);
 
 }  // namespace skyquilt::surface

@@ -32,6 +32,7 @@ struct SurfaceInput {
   geo::Vertical vertical = geo::Vertical::kAsTagged;  // of all files but the 3D tiles
   double map_resolution_m = 0.0;                      // cells of the maps
   double memory_bytes = 0.0;                          // the limit, of which the fields of the scene may take half
+  double mesh_bytes = 0.0;                            // of them for the mesh of the whole survey; 0: half
   std::string work_key;                               // identity of scene and options: results of another key are not used
   std::filesystem::path work_folder;                  // results of finished steps, for going on after an interruption
   std::filesystem::path maps_folder;                  // of orthophoto.tif and dsm.tif, for SurfaceOptions::odm_names

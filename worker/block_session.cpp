@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
+#include <type_traits>
 #include <utility>
 
 #include "core/base/errors.h"
@@ -110,7 +113,6 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.SetAttribute("origin_latitude_deg", job.survey->origin.latitude_deg);
   writer.SetAttribute("origin_longitude_deg", job.survey->origin.longitude_deg);
   writer.SetAttribute("origin_height_m", job.survey->origin.height_m);
-  std::vector<float> numbers;  // must exist until Commit
   if (extras != nullptr) {
     brightness::PutResponse(*extras->response, writer);
     extras->learner->Put(writer);
@@ -118,7 +120,8 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   }
   if (findings != nullptr) {
     scene::PutBackground(findings->background, writer);
-    for (const SurfaceInterval& band : findings->bands) numbers.insert(numbers.end(), {band.front, band.median, band.back});
+    static_assert(sizeof(SurfaceInterval) == 3 * sizeof(float) && std::is_trivially_copyable_v<SurfaceInterval>);
+    const std::span<const float> numbers(reinterpret_cast<const float*>(findings->bands.data()), 3 * findings->bands.size());
     writer.Put("surface_intervals", numbers, {static_cast<int64_t>(job.survey->photos.size()), kTileRows, kTileColumns, 3});
   }
   writer.Commit(job.checkpoint);
@@ -233,7 +236,38 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
   *record = RecordOf(reader);
 }
 
-LoadedContext LoadContext(const std::filesystem::path& checkpoint) {
+namespace {
+
+std::vector<SurfaceInterval> IntervalsOf(const std::vector<float>& numbers) {
+  std::vector<SurfaceInterval> intervals;
+  intervals.reserve(numbers.size() / 3);
+  for (size_t i = 0; i + 2 < numbers.size(); i += 3) intervals.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+  return intervals;
+}
+
+// Of these photos only, if the file has the shape that the present program writes.
+void LoadIntervals(const checkpoint::ArchiveReader& reader, const std::vector<int>* photos, LoadedContext* context) {
+  constexpr const char* kName = "surface_intervals";
+  if (!reader.Has(kName)) return;
+  const std::vector<int64_t> shape = reader.Shape(kName);
+  if (photos == nullptr || shape.size() != 4 || shape[1] != kTileRows || shape[2] != kTileColumns || shape[3] != 3) {
+    context->bands = IntervalsOf(reader.Floats(kName));
+    return;
+  }
+  std::vector<int64_t> rows;
+  for (const int photo : *photos) {
+    if (photo >= 0 && photo < shape[0]) rows.push_back(photo);
+  }
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  context->place_in_bands.assign(static_cast<size_t>(shape[0]), -1);
+  for (size_t i = 0; i < rows.size(); ++i) context->place_in_bands[static_cast<size_t>(rows[i])] = static_cast<int32_t>(i);
+  context->bands = IntervalsOf(reader.FloatRows(kName, rows));
+}
+
+}  // namespace
+
+LoadedContext LoadContext(const std::filesystem::path& checkpoint, const std::vector<int>* photos) {
   if (!std::filesystem::exists(checkpoint) && !std::filesystem::exists(checkpoint.string() + ".prev")) {
     throw base::InputError(checkpoint, "does not exist",
                            "The context is trained before the blocks; run train on the machine and folder that have it");
@@ -243,12 +277,9 @@ LoadedContext LoadContext(const std::filesystem::path& checkpoint) {
   if (usable.empty()) throw base::InputError(checkpoint, "cannot be read (" + why + ")", "Train it again with --restart");
   const checkpoint::ArchiveReader reader(usable);
   reader.RequireVersion(scene::kCheckpointVersion);
-  LoadedContext context{scene::GetField(reader, usable, ""), brightness::GetResponse(reader, usable), {}, {}, {}};
+  LoadedContext context{scene::GetField(reader, usable, ""), brightness::GetResponse(reader, usable), {}, {}, {}, {}};
   brightness::GetLuminance(reader, &context.luminance, &context.luminance_state);
-  if (reader.Has("surface_intervals")) {
-    const std::vector<float> numbers = reader.Floats("surface_intervals");
-    for (size_t i = 0; i + 2 < numbers.size(); i += 3) context.bands.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
-  }
+  LoadIntervals(reader, photos, &context);
   return context;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace {
 constexpr int kMostBackgroundCells = 384;  // along an axis
 constexpr int kReach = 1;                  // cells on each side that colours are averaged over
 constexpr double kSteepEnough = 0.35;      // rays closer to the horizon would spread one colour over hundreds of metres
+
+constexpr size_t kMostSpacings = size_t{1} << 24U;
 
 struct Splat {
   Eigen::Vector3d x;
@@ -35,6 +38,46 @@ std::vector<Splat> SplatsOf(const RaySource& source, const scene::HeightMap& poi
   }
   return splats;
 }
+
+// Splats of all photos, one after the other. When they are too many to be kept in memory, parts of them are made anew every time.
+class SplatsOfPhotos {
+ public:
+  SplatsOfPhotos(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, size_t photos_in_memory,
+                 base::ThreadPool& threads)
+      : source_(source),
+        survey_(survey),
+        points_(points),
+        threads_(threads),
+        keeps_(survey.photos.size() <= photos_in_memory),
+        part_size_(keeps_ ? survey.photos.size() : std::max<size_t>(1, photos_in_memory / 8)) {}
+
+  // Calls each(splat) in the order of photos and tiles.
+  template <typename Each>
+  void ForEach(const Each& each) {
+    const size_t n = survey_.photos.size();
+    for (size_t first = 0; first < n; first += part_size_) {
+      if (!keeps_ || part_.empty()) Make(first, std::min(n, first + part_size_));
+      for (const std::vector<Splat>& splats : part_) std::ranges::for_each(splats, each);
+    }
+  }
+
+ private:
+  void Make(size_t first, size_t end) {
+    part_.assign(end - first, {});
+    threads_.ParallelFor(static_cast<int64_t>(part_.size()), [&](int64_t task, int) {
+      const size_t photo = first + static_cast<size_t>(task);
+      if (!survey_.photos[photo].is_test) part_[static_cast<size_t>(task)] = SplatsOf(source_, points_, static_cast<int>(photo));
+    });
+  }
+
+  const RaySource& source_;
+  const survey::Survey& survey_;
+  const scene::HeightMap& points_;
+  base::ThreadPool& threads_;
+  bool keeps_;
+  size_t part_size_;
+  std::vector<std::vector<Splat>> part_;
+};
 
 // [elevation][azimuth][channel] of the sky in the training photos; empty when they show none.
 std::vector<float> SkyOf(const RaySource& source, const survey::Survey& survey, const PointRanges& ranges) {
@@ -65,28 +108,25 @@ std::vector<float> SkyOf(const RaySource& source, const survey::Survey& survey, 
 }  // namespace
 
 scene::Background MakeBackground(const RaySource& source, const survey::Survey& survey, const scene::HeightMap& points, const PointRanges& ranges,
-                                 uint64_t seed, base::ThreadPool& threads) {
+                                 uint64_t seed, base::ThreadPool& threads, size_t photos_in_memory) {
   scene::Background background;
   background.mean_srgb = source.MeanColor(seed);
   if (!ranges.Empty()) background.sky_srgb = SkyOf(source, survey, ranges);
   if (points.Empty()) return background;
-  std::vector<std::vector<Splat>> of_photos(survey.photos.size());
-  threads.ParallelFor(static_cast<int64_t>(of_photos.size()), [&](int64_t photo, int) {
-    const auto i = static_cast<size_t>(photo);
-    if (!survey.photos[i].is_test) of_photos[i] = SplatsOf(source, points, static_cast<int>(photo));
-  });
+  SplatsOfPhotos splats(source, survey, points, photos_in_memory, threads);
   std::vector<double> spacing;
+  // Of very many neighbours every n-th tells the same median.
+  const size_t every = survey.photos.size() * kTileRows * kTileColumns / kMostSpacings + 1;
+  size_t neighbours = 0;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Eigen::Vector2d low = Eigen::Vector2d::Constant(kInfinity), high = -low;
-  const Splat* before = nullptr;
-  for (const std::vector<Splat>& splats : of_photos) {
-    for (const Splat& splat : splats) {
-      if (splat.column > 0 && before != nullptr) spacing.push_back((splat.x - before->x).head<2>().norm());
-      low = low.cwiseMin(splat.x.head<2>());
-      high = high.cwiseMax(splat.x.head<2>());
-      before = &splat;
-    }
-  }
+  std::optional<Eigen::Vector3d> before;
+  splats.ForEach([&](const Splat& splat) {
+    if (splat.column > 0 && before && neighbours++ % every == 0) spacing.push_back((splat.x - *before).head<2>().norm());
+    low = low.cwiseMin(splat.x.head<2>());
+    high = high.cwiseMax(splat.x.head<2>());
+    before = splat.x;
+  });
   if (spacing.empty()) return background;
   const Eigen::Vector2d size = (high - low).cwiseMax(1e-3);
   const double cell_m = std::max(base::UpperMedian(spacing), size.maxCoeff() / kMostBackgroundCells);
@@ -104,7 +144,7 @@ scene::Background MakeBackground(const RaySource& source, const survey::Survey& 
       }
     }
   };
-  for (const std::vector<Splat>& splats : of_photos) std::ranges::for_each(splats, add);
+  splats.ForEach(add);
   for (size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(1.0, count[i / 3]);
   std::vector<double> heights;
   heights.reserve(grid.size());

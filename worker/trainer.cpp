@@ -154,7 +154,7 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
     if (finished) saved.reset();
   }
   // Even independent blocks use the context's brightness.
-  LoadedContext loaded = LoadContext(context_checkpoint);
+  LoadedContext loaded = LoadContext(context_checkpoint, &block.photos);
   const LoadedContext* context = job.options.coupling == "guided" ? &loaded : nullptr;
   if (loaded.response.photos() != job.survey->photos.size()) {
     throw base::InputError(

@@ -143,6 +143,7 @@ void AddBench(CLI::App& app, CommandState& state) {
   AddPosesBench(*bench, state);
   AddStudyBenches(*bench, state);
   AddStabilityBench(*bench, state);
+  AddScaleBench(*bench, state);
 }
 
 }  // namespace skyquilt::app

@@ -1,6 +1,8 @@
 // Messages that carry rays from rank 0 to a rank that renders them, and back. All ranks must run the same program on machines of one byte order.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -27,6 +29,13 @@ struct RayReply {
   std::vector<render::RayColor> colors;       // of the finished rays, in order
   Failure failure;                            // when set, there are no rays
 };
+
+// How many of the rays of one call a request gets: enough to keep a rank's cores busy while the next request is on its way, and so few that every
+// rank gets several, or at least one.
+constexpr size_t RaysPerRequest(size_t rays, int ranks) {
+  constexpr size_t kFewest = 512, kMost = size_t{1} << 14U, kRequestsOfRank = 4;
+  return std::clamp(rays / (kRequestsOfRank * static_cast<size_t>(ranks)), kFewest, kMost);
+}
 
 // A ray takes 24 bytes when the rays of the request differ only in direction and none has been rendered in part; otherwise at most 152, or with
 // normals 176.

@@ -14,9 +14,6 @@ namespace {
 using scene::kFinished;
 using scene::RayInFlight;
 
-// Rays per request: enough to keep a rank's cores busy while the next request is on its way, few enough that every rank gets some.
-constexpr size_t kMostRays = 1 << 14;
-constexpr size_t kFewestRays = 1 << 11;
 // Requests that a rank has at a time: one that it renders and the next one.
 constexpr size_t kWithRank = 2;
 
@@ -28,7 +25,7 @@ struct RemoteRenderer::Work {
   std::span<render::RayColor> out;
   render::EngineOptions options;
   std::vector<RayInFlight> in_flight;
-  size_t chunk = kMostRays;
+  size_t chunk = 1;                                      // rays per request
   size_t next_ray = 0;                                   // first ray that no group has yet
   size_t arrived = 0;                                    // finished rays
   std::map<int, std::deque<Request>> waiting;            // per rank: not sent yet
@@ -43,6 +40,7 @@ RemoteRenderer::RemoteRenderer(comm::Communicator& comm, const std::string& setu
 void RemoteRenderer::Begin(const scene::FieldStore& store, const render::RaySegments& segments) {
   store_ = &store;
   segments_ = &segments;
+  splitter_.emplace(segments);
   const std::vector<GroupMember> members = group_.WaitForRanks();
   std::vector<int> ranks;
   std::vector<double> memory;
@@ -70,7 +68,7 @@ void RemoteRenderer::Render(std::span<const render::Ray> rays, std::span<render:
   work.out = out;
   work.options = options;
   work.in_flight.resize(rays.size());
-  work.chunk = std::clamp(rays.size() / (4 * static_cast<size_t>(statistics_.ranks)), kFewestRays, kMostRays);
+  work.chunk = RaysPerRequest(rays.size(), statistics_.ranks);
   work.in_group.assign(groups_.size(), 0);
   statistics_.rays += static_cast<int64_t>(rays.size());
   while (work.arrived < rays.size()) {
@@ -114,7 +112,7 @@ void RemoteRenderer::AddChunk(Work& work, size_t group) {
     int owner = anyone;
     if (members.ranks.size() > 1) {
       segments.clear();
-      segments_->Split(work.rays[i], &segments);
+      splitter_->Split(work.rays[i], &segments);
       // Every rank has the context. The owner of the first block on the ray starts it, so that the ray is passed on less often.
       const auto first = std::find_if(segments.begin(), segments.end(), [&](const auto& segment) { return !segments_->Blocks(segment.set).empty(); });
       if (first != segments.end()) owner = OwnerOf(members.owner, segments_->Blocks(first->set), anyone);

@@ -48,6 +48,7 @@ class RemoteRenderer : public scene::RayService {
   RankGroup group_;
   const scene::FieldStore* store_ = nullptr;
   const render::RaySegments* segments_ = nullptr;
+  std::optional<render::RaySplitter> splitter_;  // of these
   std::vector<RenderGroup> groups_;
   uint64_t next_id_ = 1;
   std::optional<Failure> broken_;  // a rank cannot go on, and nor can any later call

@@ -22,7 +22,7 @@ constexpr double kMostPreviewSeconds = 30.0;
 constexpr double kFewestPreviewSeconds = 1.0;
 
 scene::SceneInfo InfoOfContext(const render::TrainedField& context, const survey::Survey& survey, const partition::BlockSet& blocks,
-                               const Project& project) {
+                               const Settings& settings, const Project& project) {
   scene::SceneInfo info;
   info.origin = blocks.origin;
   info.georeferenced = blocks.georeferenced;
@@ -30,7 +30,7 @@ scene::SceneInfo InfoOfContext(const render::TrainedField& context, const survey
   info.height_reference = blocks.height_reference;
   info.min_enu = context.box.min_enu;
   info.max_enu = context.box.max_enu;
-  info.gsd_m = SpecOfSurvey(blocks, survey, project.BlocksFile()).finest_voxel_m;
+  info.gsd_m = SpecOfSurvey(blocks, survey, project.BlocksFile(), settings).finest_voxel_m;
   return info;
 }
 
@@ -55,7 +55,7 @@ void Make(const survey::Survey& survey, const partition::BlockSet& blocks, const
     }
   };
   const products::FieldPreview preview =
-      products::MakeFieldPreview(InfoOfContext(context, survey, blocks, project), caster,
+      products::MakeFieldPreview(InfoOfContext(context, survey, blocks, settings, project), caster,
                                  std::clamp(seconds, kFewestPreviewSeconds, kMostPreviewSeconds), settings.products, project.ProductsFolder());
   base::LogInfo("picture from the context: {}, {} x {} cells of {:.3g} m", preview.picture.string(), preview.grid.width, preview.grid.height,
                 preview.grid.resolution_m);

@@ -29,10 +29,12 @@ worker::BlockSpec SpecOfBlock(const partition::Block& block) {
   return spec;
 }
 
-worker::BlockSpec SpecOfSurvey(const partition::BlockSet& blocks, const survey::Survey& survey, const std::filesystem::path& blocks_file) {
+worker::BlockSpec SpecOfSurvey(const partition::BlockSet& blocks, const survey::Survey& survey, const std::filesystem::path& blocks_file,
+                               const Settings& settings) {
   worker::BlockSpec spec;
   spec.name = "context";
   bool any = false;
+  size_t n_blocks = 0;
   double finest_block_voxel_m = 0.0;
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) continue;
@@ -41,14 +43,19 @@ worker::BlockSpec SpecOfSurvey(const partition::BlockSet& blocks, const survey::
     spec.log2_table_size = any ? std::max(spec.log2_table_size, block.log2_table_size - 1) : block.log2_table_size - 1;
     finest_block_voxel_m = any ? std::min(finest_block_voxel_m, block.finest_voxel_m) : block.finest_voxel_m;
     any = true;
+    ++n_blocks;
   }
   if (!any)
     throw base::InputError(blocks_file, "every block is empty, so there is nothing to train",
                            "Check the photos' positions or use larger blocks (--blocks)");
   spec.log2_table_size = std::max(spec.log2_table_size, 1);
-  // A thousandth of the survey's width is fine enough: the context shows what is behind a block, seen from far away.
+  const int doublings = ContextDoublings(n_blocks, spec.log2_table_size, settings);
+  spec.log2_table_size += doublings;
+  // A thousandth of the survey's width is fine enough: the context shows what is behind a block, seen from far away. Of a large survey it would be
+  // many metres, but the context also chooses the pixels and the first occupancy of every block; there voxels shrink as fast as entries of a surface
+  // grow.
   const Eigen::Vector3d extent = spec.box.max_enu - spec.box.min_enu;
-  spec.finest_voxel_m = std::max(2.0 * finest_block_voxel_m, std::max(extent.x(), extent.y()) / 1024.0);
+  spec.finest_voxel_m = std::max(2.0 * finest_block_voxel_m, std::max(extent.x(), extent.y()) / (1024.0 * std::sqrt(std::ldexp(1.0, doublings))));
   spec.photos.resize(survey.photos.size());
   std::iota(spec.photos.begin(), spec.photos.end(), 0);
   return spec;
@@ -59,8 +66,10 @@ int ContextSteps(const Settings& settings) {
   return settings.train.steps > 0 ? std::max(200, settings.train.steps / 2) : 0;
 }
 
-double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads) {
-  const double entries = std::ldexp(1.0, block.log2_table_size);
+namespace {
+
+double TrainingBytes(int log2_table_size, const worker::TrainOptions& options, int threads) {
+  const double entries = std::ldexp(1.0, log2_table_size);
   // Parameters and two moments of every level, once as they are and once as the last good state, and the gradient of one level per thread. Other
   // encodings with tables need as much.
   const bool tables = encoding::KindNamed(options.encoding) != encoding::Kind::kFrequency;
@@ -69,7 +78,38 @@ double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainO
   return table + per_sample * options.batch_samples + 64e6 * threads;
 }
 
-bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& blocks, const Settings& settings, int threads, int ranks_on_machine) {
+}  // namespace
+
+double ExpectedTrainingBytes(const partition::Block& block, const worker::TrainOptions& options, int threads) {
+  return TrainingBytes(block.log2_table_size, options, threads);
+}
+
+int ContextDoublings(size_t blocks, int log2_table_size, const Settings& settings) {
+  constexpr size_t kBlocks = 64;
+  constexpr int kMost = 3, kLargestLog2 = 24;
+  constexpr double kShareOfMemory = 0.5;
+  const int threads = settings.run.UsableThreads();
+  int doublings = 0;
+  for (size_t n = 2 * kBlocks; n <= blocks && doublings < kMost; n *= 2) {
+    const int larger = log2_table_size + doublings + 1;
+    if (larger > kLargestLog2 || TrainingBytes(larger, settings.context, threads) > kShareOfMemory * settings.run.MemoryLimitBytes()) break;
+    ++doublings;
+  }
+  return doublings;
+}
+
+double SurveyBytes(const survey::Survey& survey) {
+  // Points are also sorted into maps and grids where a training starts.
+  constexpr double kCopies = 2.0;
+  const auto of = [](const std::vector<survey::SparsePoint>& points, const survey::PointTracks& tracks) {
+    return static_cast<double>(points.size() * (sizeof(survey::SparsePoint) + sizeof(size_t)) + tracks.observations() * sizeof(int32_t));
+  };
+  return kCopies * of(survey.points, survey.tracks) + of(survey.kept_points, survey.kept_tracks) +
+         static_cast<double>(survey.photos.size() * sizeof(survey::Photo));
+}
+
+bool MustStream(const image::PixelCache& pixels, const survey::Survey& survey, const partition::BlockSet& blocks, const Settings& settings,
+                int threads, int ranks_on_machine) {
   constexpr double kProgramBytes = 256e6;
   double largest = 0.0;
   for (const partition::Block& block : blocks.blocks) {
@@ -77,7 +117,7 @@ bool MustStream(const image::PixelCache& pixels, const partition::BlockSet& bloc
   }
   // Every rank maps the pixels of all photos, so they count for each rank.
   const double per_rank = settings.run.MemoryLimitBytes() / std::max(1, ranks_on_machine);
-  return static_cast<double>(pixels.FileBytes()) + largest + kProgramBytes > per_rank;
+  return static_cast<double>(pixels.FileBytes()) + largest + SurveyBytes(survey) + kProgramBytes > per_rank;
 }
 
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
@@ -111,7 +151,7 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
         base::LogInfo("{}", LuminanceRemark(train.luminance, statistics));
       }
       train.checkpoint = project.ContextCheckpoint();
-      return worker::TrainContext(train, SpecOfSurvey(blocks, survey, project.BlocksFile()), threads, both);
+      return worker::TrainContext(train, SpecOfSurvey(blocks, survey, project.BlocksFile(), settings), threads, both);
     }
     const partition::Block& block = blocks.blocks[static_cast<size_t>(job.block)];
     train.checkpoint = project.BlockCheckpoint(block.name);

@@ -31,15 +31,16 @@ constexpr int kMaxTries = 3;
 // Of a time budget for all of the stage.
 constexpr double kMostSetupShare = 0.25, kPreviewShare = 0.02;
 
-void RequireMemory(const partition::BlockSet& blocks, const Settings& settings, int threads, int per_host) {
-  const double limit = settings.run.MemoryLimitBytes();
+void RequireMemory(const partition::BlockSet& blocks, const survey::Survey& survey, const Settings& settings, int threads, int per_host) {
+  const double limit = settings.run.MemoryLimitBytes(), of_survey = SurveyBytes(survey);
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) continue;
-    const double bytes = ExpectedTrainingBytes(block, settings.train, threads);
+    const double bytes = ExpectedTrainingBytes(block, settings.train, threads) + of_survey;
     if (bytes * per_host > limit) {
       throw base::UsageError(
-          "block " + block.name + " needs about " + base::FormatCount(bytes) + "B of memory to train, but the limit for " + std::to_string(per_host) +
-          " rank(s) on one machine is " + base::FormatCount(limit) +
+          "block " + block.name + " needs about " + base::FormatCount(bytes) + "B of memory to train, " + base::FormatCount(of_survey) +
+          "B of it for photos and points of the survey, but the limit for " + std::to_string(per_host) + " rank(s) on one machine is " +
+          base::FormatCount(limit) +
           "B (run.memory_gb). Raise --memory, use fewer ranks per machine, more and smaller blocks, or a smaller partition.max_log2_table_size");
     }
   }
@@ -56,7 +57,7 @@ class Training {
     const int all_threads = settings_.run.UsableThreads();
     base::ThreadPool pool(all_threads);
     image::PixelCache pixels = image::PixelCache::Open(project_.PixelCacheFile(), PixelSources(*input_.survey), settings_.run.image_width, pool);
-    pixels.Stream(MustStream(pixels, *input_.blocks, settings_, all_threads, comm_.local_size()));
+    pixels.Stream(MustStream(pixels, *input_.survey, *input_.blocks, settings_, all_threads, comm_.local_size()));
     if (pixels.streaming()) {
       base::LogInfo("pixels of the photos ({}B) are read from disk on demand: with a block they exceed the memory limit of {}B (--memory)",
                     base::FormatCount(static_cast<double>(pixels.FileBytes())), base::FormatCount(settings_.run.MemoryLimitBytes()));
@@ -80,7 +81,7 @@ class Training {
     if (comm_.size() > 1) {
       threads = AssignThreads(group.WaitForRanks(), &per_host);
     }
-    RequireMemory(*input_.blocks, settings_, threads, per_host);
+    RequireMemory(*input_.blocks, *input_.survey, settings_, threads, per_host);
     TrainContext(trainer, all_threads);
     ShowContext(pool);
     TrainBlocks(trainer, threads);
@@ -290,7 +291,7 @@ void ServeTraining(comm::Communicator& comm, const std::string& setup_text) {
     const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
     const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
     image::PixelCache pixels = image::PixelCache::OpenBuilt(project.PixelCacheFile(), setup.at("pixels").get<std::string>());
-    pixels.Stream(MustStream(pixels, blocks, settings, settings.run.UsableThreads(), comm.local_size()));
+    pixels.Stream(MustStream(pixels, survey, blocks, settings, settings.run.UsableThreads(), comm.local_size()));
     hello["threads"] = settings.run.UsableThreads();
     const int threads = std::stoi(Register(comm, hello, kTagThreads));
     base::ThreadPool pool(threads);

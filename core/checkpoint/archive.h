@@ -75,6 +75,8 @@ class ArchiveReader {
   std::string TypeName(const std::string& name) const;  // "float32", "float64", "uint8", "int64", "bfloat16", "float16"
   // Arrays and attributes by name. Throw base::InputError when absent or of another type. Floats also reads 16-bit floats.
   std::vector<float> Floats(const std::string& name) const;
+  // Only these entries of the first dimension, ascending and each once: all of their floats, in the order of `rows`. Not of 16-bit floats.
+  std::vector<float> FloatRows(const std::string& name, std::span<const int64_t> rows) const;
   // Like Floats, but restores the full size of an array from PutPruned, with zeros for the groups that were not stored.
   std::vector<float> PrunedFloats(const std::string& name) const;
   std::vector<double> Doubles(const std::string& name) const;

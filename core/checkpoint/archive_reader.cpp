@@ -1,5 +1,7 @@
 #include <hdf5.h>
 
+#include <algorithm>
+#include <functional>
 #include <map>
 #include <variant>
 
@@ -168,6 +170,35 @@ struct ArchiveReader::Impl {
     return values;
   }
 
+  std::vector<float> ReadRows(const std::string& name, std::span<const int64_t> rows) const {
+    const ArrayInfo& info = Info(name);
+    if (info.type != ElementType::kFloat32) {
+      throw InputError(path, "has array '" + name + "' as " + ElementName(info.type) + " where float32 is expected", kFixVersion);
+    }
+    const bool ascending = std::adjacent_find(rows.begin(), rows.end(), std::greater_equal<>()) == rows.end();
+    SKYQUILT_CHECK(ascending && (rows.empty() || (rows.front() >= 0 && rows.back() < info.shape.front())), "rows of array '" + name + "'");
+    if (rows.empty() || info.n_values == 0) return {};
+    const auto each = static_cast<hsize_t>(info.n_values) / static_cast<hsize_t>(info.shape.front());
+    std::vector<float> values(rows.size() * each);
+    const HdfLock lock;
+    const Handle dataset(H5Dopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    const Handle space(dataset.Valid() ? H5Dget_space(dataset.id()) : -1, H5Sclose);
+    if (!space.Valid() || H5Sselect_none(space.id()) < 0) Damaged("array " + name);
+    std::vector<hsize_t> start(info.shape.size(), 0), count(info.shape.begin(), info.shape.end());
+    for (size_t i = 0; i < rows.size();) {
+      size_t end = i + 1;
+      while (end < rows.size() && rows[end] == rows[end - 1] + 1) ++end;
+      start[0] = static_cast<hsize_t>(rows[i]);
+      count[0] = static_cast<hsize_t>(end - i);
+      if (H5Sselect_hyperslab(space.id(), H5S_SELECT_OR, start.data(), nullptr, count.data(), nullptr) < 0) Damaged("array " + name);
+      i = end;
+    }
+    const auto n = static_cast<hsize_t>(values.size());
+    const Handle memory(H5Screate_simple(1, &n, nullptr), H5Sclose);
+    if (!memory.Valid() || H5Dread(dataset.id(), H5T_NATIVE_FLOAT, memory.id(), space.id(), H5P_DEFAULT, values.data()) < 0) Damaged("array " + name);
+    return values;
+  }
+
   template <typename T>
   const T& Get(const std::string& name, const char* type_name) const {
     const auto at = attributes.find(name);
@@ -227,6 +258,9 @@ std::vector<float> ArchiveReader::Floats(const std::string& name) const {
   const ElementType stored = impl_->Info(name).type;
   if (IsShortFloat(stored)) return FloatsOf(impl_->Read<uint16_t>(name, stored), stored);
   return impl_->Read<float>(name, ElementType::kFloat32);
+}
+std::vector<float> ArchiveReader::FloatRows(const std::string& name, std::span<const int64_t> rows) const {
+  return impl_->ReadRows(name, rows);
 }
 std::vector<float> ArchiveReader::PrunedFloats(const std::string& name) const {
   std::vector<float> kept = Floats(name);

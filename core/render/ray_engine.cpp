@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -11,6 +13,7 @@
 #include "core/render/density_normal.h"
 #include "core/render/footprint.h"
 #include "core/render/sample_marcher.h"
+#include "core/render/scratch_pool.h"
 
 namespace skyquilt::render {
 namespace {
@@ -30,6 +33,7 @@ struct Progress {
 
 // Samples of one field in one round, and those of all rounds that need colour.
 struct FieldBatch {
+  size_t field = 0;            // blocks in order, then the context
   std::vector<float> x, y, z;  // planes of the positions (kernel::Positions)
   std::vector<float> sharpness;
   size_t count = 0;
@@ -49,25 +53,24 @@ class RayRenderer::Group {
  public:
   Group(const FieldSet& fields, const EngineOptions& options) : options_(options), marcher_(fields, options.step_scale), all_(fields.blocks) {
     if (fields.context != nullptr) all_.push_back(fields.context);
-    batches_.resize(all_.size());
-    scratch_.resize(all_.size());
+    batch_of_.assign(all_.size(), kNoBatch);
+    scratch_of_.resize(all_.size());
     for (size_t k = 0; k < all_.size(); ++k) {
-      if (all_[k]->field) scratch_[k].Reserve(*all_[k]->field, field::kChunk);
+      if (all_[k]->field) scratch_of_[k] = scratch_.For(*all_[k]->field);
     }
   }
 
   int64_t Continue(std::span<const Ray> rays, std::span<const Window> windows, std::span<RayState> states) {
     samples_.clear();
     progress_.assign(rays.size(), {});
-    for (FieldBatch& batch : batches_) {
-      batch.visible_geometry.clear();
-      batch.visible = 0;
-    }
+    for (size_t b = 0; b < in_use_; ++b) batch_of_[batches_[b].field] = kNoBatch;
+    in_use_ = 0;
     alive_.clear();
     for (size_t r = 0; r < rays.size(); ++r) {
       progress_[r].begin = progress_[r].next = samples_.size();
       if (!states[r].ended) marcher_.March(rays[r], windows.empty() ? Window{} : windows[r], &samples_);
       progress_[r].end = samples_.size();
+      for (size_t s = progress_[r].begin; s < progress_[r].end; ++s) UseField(static_cast<size_t>(samples_[s].field));
       if (progress_[r].end > progress_[r].begin) alive_.push_back(r);
     }
     int64_t evaluated = 0;
@@ -79,44 +82,60 @@ class RayRenderer::Group {
       }
       alive_.resize(kept);
     }
-    for (size_t k = 0; k < all_.size(); ++k) EvaluateColor(k, rays);
+    for (size_t b = 0; b < in_use_; ++b) EvaluateColor(b, rays);
     for (size_t r = 0; r < rays.size(); ++r) ComposeColor(progress_[r], states[r]);
     if (options_.normals) AddNormals(rays, states);
     return evaluated;
   }
 
  private:
+  const TrainedField& FieldOf(const FieldBatch& batch) const { return *all_[batch.field]; }
+  const field::Activations& ScratchOf(const FieldBatch& batch) const { return scratch_[scratch_of_[batch.field]]; }
+  FieldBatch& BatchOf(const Sample& sample) { return batches_[batch_of_[static_cast<size_t>(sample.field)]]; }
+  const FieldBatch& BatchOf(const Sample& sample) const { return batches_[batch_of_[static_cast<size_t>(sample.field)]]; }
+
+  // Gives a field a batch if it has none.
+  void UseField(size_t k) {
+    if (batch_of_[k] != kNoBatch) return;
+    if (in_use_ == batches_.size()) batches_.emplace_back();
+    FieldBatch& batch = batches_[in_use_];
+    batch.field = k;
+    batch.count = batch.visible = 0;
+    batch.visible_geometry.clear();
+    batch_of_[k] = in_use_++;
+  }
+
   // Evaluates the densities of the next samples of every ray that is not opaque yet.
   int64_t EvaluateRound(std::span<const Ray> rays) {
-    for (FieldBatch& batch : batches_) batch.count = 0;
+    for (size_t b = 0; b < in_use_; ++b) batches_[b].count = 0;
     int64_t evaluated = 0;
     for (const size_t r : alive_) {
       const Progress& p = progress_[r];
       const size_t end = std::min(p.end, p.next + kRoundSamples);
-      for (size_t s = p.next; s < end; ++s) samples_[s].local = static_cast<int>(batches_[static_cast<size_t>(samples_[s].field)].count++);
+      for (size_t s = p.next; s < end; ++s) samples_[s].local = static_cast<int>(BatchOf(samples_[s]).count++);
       evaluated += static_cast<int64_t>(end - p.next);
     }
-    for (size_t k = 0; k < all_.size(); ++k) MakeRoom(k);
+    for (size_t b = 0; b < in_use_; ++b) MakeRoom(b);
     for (const size_t r : alive_) {
       const Progress& p = progress_[r];
       for (size_t s = p.next; s < std::min(p.end, p.next + kRoundSamples); ++s) PlaceSample(rays[r], samples_[s]);
     }
-    for (size_t k = 0; k < all_.size(); ++k) EvaluateDensity(k);
+    for (size_t b = 0; b < in_use_; ++b) EvaluateDensity(b);
     return evaluated;
   }
 
   // For the positions of batch.count samples.
-  void MakeRoom(size_t k) {
-    FieldBatch& batch = batches_[k];
-    const size_t needed = batch.count * Points(*all_[k]);
+  void MakeRoom(size_t b) {
+    FieldBatch& batch = batches_[b];
+    const size_t needed = batch.count * Points(FieldOf(batch));
     for (auto* v : {&batch.x, &batch.y, &batch.z}) v->resize(std::max(v->size(), needed));
     batch.sharpness.resize(std::max(batch.sharpness.size(), batch.count));
   }
 
-  kernel::Positions PlacesOf(size_t k) const {
-    const FieldBatch& batch = batches_[k];
-    const float* const sharpness = all_[k]->config.Cones() ? batch.sharpness.data() : nullptr;
-    return {batch.x.data(), batch.y.data(), batch.z.data(), sharpness, static_cast<int>(Points(*all_[k])), batch.count};
+  kernel::Positions PlacesOf(const FieldBatch& batch) const {
+    const TrainedField& f = FieldOf(batch);
+    const float* const sharpness = f.config.Cones() ? batch.sharpness.data() : nullptr;
+    return {batch.x.data(), batch.y.data(), batch.z.data(), sharpness, static_cast<int>(Points(f)), batch.count};
   }
 
   static size_t Points(const TrainedField& f) { return static_cast<size_t>(std::max(1, f.config.multisample)); }
@@ -124,7 +143,7 @@ class RayRenderer::Group {
   // Writes the positions and the footprint of a sample to its field's batch.
   void PlaceSample(const Ray& ray, const Sample& sample) {
     const TrainedField& f = *all_[static_cast<size_t>(sample.field)];
-    FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
+    FieldBatch& batch = BatchOf(sample);
     const auto local = static_cast<size_t>(sample.local);
     batch.x[local] = sample.x;
     batch.y[local] = sample.y;
@@ -138,24 +157,26 @@ class RayRenderer::Group {
                    &batch.z[local], batch.count);
   }
 
-  void EvaluateDensity(size_t k) {
-    FieldBatch& batch = batches_[k];
+  void EvaluateDensity(size_t b) {
+    FieldBatch& batch = batches_[b];
     const auto n = static_cast<int64_t>(batch.count);
     if (n == 0) return;
-    const field::HashField& f = *all_[k]->field;
+    const TrainedField& trained = FieldOf(batch);
+    const field::HashField& f = *trained.field;
+    const field::Activations& scratch = ScratchOf(batch);
     const int64_t padded = kernel::Padded(n);
     batch.stride = kernel::StrideFor(n);
     const auto rows = static_cast<size_t>(f.FeatureRows());
     batch.features.resize(std::max(batch.features.size(), rows * batch.stride));
     batch.geometry.resize(std::max(batch.geometry.size(), static_cast<size_t>(field::kGeometryRows) * batch.stride));
-    f.EncodeSerial(all_[k]->parameters.grid, PlacesOf(k), n, batch.features.data(), batch.stride);
+    f.EncodeSerial(trained.parameters.grid, PlacesOf(batch), n, batch.features.data(), batch.stride);
     for (size_t row = 0; row < rows; ++row) std::fill_n(batch.features.data() + row * batch.stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {
-      f.Density(all_[k]->weights, batch.features.data() + begin, batch.stride, std::min<int64_t>(field::kChunk, padded - begin),
-                scratch_[k].density_hidden, scratch_[k].stride, batch.geometry.data() + begin, batch.stride);
+      f.Density(trained.weights, batch.features.data() + begin, batch.stride, std::min<int64_t>(field::kChunk, padded - begin),
+                scratch.density_hidden, scratch.stride, batch.geometry.data() + begin, batch.stride);
     }
     batch.step_depth.resize(std::max(batch.step_depth.size(), batch.stride));
-    kernel::ExpShifted(batch.geometry.data(), padded, static_cast<float>(all_[k]->config.density_bias), kMaxLogTau, batch.step_depth.data());
+    kernel::ExpShifted(batch.geometry.data(), padded, static_cast<float>(trained.config.density_bias), kMaxLogTau, batch.step_depth.data());
   }
 
   // Composites the samples of the round in order of distance; false when the ray is finished.
@@ -165,7 +186,7 @@ class RayRenderer::Group {
     const size_t end = std::min(p.end, p.next + kRoundSamples);
     for (; p.next < end; ++p.next) {
       Sample& sample = samples_[p.next];
-      FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
+      FieldBatch& batch = BatchOf(sample);
       const auto local = static_cast<size_t>(sample.local);
       const double tau = static_cast<double>(batch.step_depth[local] * sample.unit_length * sample.blend);
       const double after = state.transmittance * std::exp(-tau);
@@ -192,45 +213,47 @@ class RayRenderer::Group {
     return p.next < p.end;
   }
 
-  void EvaluateColor(size_t k, std::span<const Ray> rays) {
-    FieldBatch& batch = batches_[k];
+  void EvaluateColor(size_t b, std::span<const Ray> rays) {
+    FieldBatch& batch = batches_[b];
     const auto n = static_cast<int64_t>(batch.visible);
     if (n == 0) return;
-    const field::HashField& f = *all_[k]->field;
+    const TrainedField& trained = FieldOf(batch);
+    const field::HashField& f = *trained.field;
+    const field::Activations& scratch = ScratchOf(batch);
     const int64_t padded = kernel::Padded(n);
     batch.visible_stride = kernel::StrideFor(n);
     const auto inputs = static_cast<size_t>(f.ColorInputRows());
     batch.color_in.resize(std::max(batch.color_in.size(), inputs * batch.visible_stride));
     batch.color.resize(std::max(batch.color.size(), static_cast<size_t>(field::kColorRows) * batch.visible_stride));
-    FillColorInput(k, rays);
+    FillColorInput(b, rays);
     for (size_t row = 0; row < inputs; ++row) std::fill_n(batch.color_in.data() + row * batch.visible_stride + n, padded - n, 0.0F);
     for (int64_t begin = 0; begin < padded; begin += field::kChunk) {
       const int64_t count = std::min<int64_t>(field::kChunk, padded - begin);
-      f.Color(all_[k]->weights, batch.color_in.data() + begin, batch.visible_stride, count, scratch_[k].color_hidden, scratch_[k].stride,
+      f.Color(trained.weights, batch.color_in.data() + begin, batch.visible_stride, count, scratch.color_hidden, scratch.stride,
               batch.color.data() + begin, batch.visible_stride);
     }
     for (size_t c = 0; c < 3; ++c) {
       float* row = batch.color.data() + c * batch.visible_stride;
-      kernel::Sigmoid(row, padded, static_cast<float>(all_[k]->config.color_range), row);
+      kernel::Sigmoid(row, padded, static_cast<float>(trained.config.color_range), row);
     }
   }
 
   // Orders visible samples by ray, so that the direction of a ray is encoded once.
-  void FillColorInput(size_t k, std::span<const Ray> rays) {
-    FieldBatch& batch = batches_[k];
+  void FillColorInput(size_t b, std::span<const Ray> rays) {
+    FieldBatch& batch = batches_[b];
     float* sh = batch.color_in.data() + static_cast<size_t>(field::kGeometryRows) * batch.visible_stride;
     size_t next = 0;
     for (size_t r = 0; r < rays.size(); ++r) {
       const size_t first = next;
       for (size_t s = progress_[r].begin; s < progress_[r].next; ++s) {
-        if (samples_[s].field != static_cast<int>(k) || !(samples_[s].weight > options_.colour_threshold)) continue;
+        if (samples_[s].field != static_cast<int>(batch.field) || !(samples_[s].weight > options_.colour_threshold)) continue;
         const float* geometry = batch.visible_geometry.data() + static_cast<size_t>(samples_[s].local) * field::kGeometryRows;
         for (size_t row = 0; row < field::kGeometryRows; ++row) batch.color_in[row * batch.visible_stride + next] = geometry[row];
         samples_[s].local = static_cast<int>(next++);
       }
       if (next == first) continue;
       const Eigen::Vector3f d = rays[r].direction_enu.cast<float>();
-      all_[k]->field->EncodeDirection(d.data(), static_cast<int64_t>(next - first), sh + first, batch.visible_stride);
+      FieldOf(batch).field->EncodeDirection(d.data(), static_cast<int64_t>(next - first), sh + first, batch.visible_stride);
     }
   }
 
@@ -238,7 +261,7 @@ class RayRenderer::Group {
     for (size_t s = p.begin; s < p.next; ++s) {
       const Sample& sample = samples_[s];
       if (!(sample.weight > options_.colour_threshold)) continue;
-      const FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
+      const FieldBatch& batch = BatchOf(sample);
       for (size_t c = 0; c < 3; ++c) state.rgb_srgb[c] += sample.weight * batch.color[c * batch.visible_stride + static_cast<size_t>(sample.local)];
     }
     if (options_.concealing != Concealing::kNone) ComposeConcealed(p, state);
@@ -249,7 +272,7 @@ class RayRenderer::Group {
     for (size_t s = p.begin; s < p.next; ++s) {
       const Sample& sample = samples_[s];
       if (!(sample.weight > options_.colour_threshold)) continue;
-      const FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
+      const FieldBatch& batch = BatchOf(sample);
       const float* color = batch.color.data() + static_cast<size_t>(sample.local);
       const auto& taps = all_[static_cast<size_t>(sample.field)]->weights.luminance;
       const float sum = std::accumulate(taps.begin(), taps.end() - 1, 0.0F);
@@ -266,42 +289,44 @@ class RayRenderer::Group {
 
   // Normals of the samples that have a colour, which are placed again in the order of their colours.
   void AddNormals(std::span<const Ray> rays, std::span<RayState> states) {
-    for (size_t k = 0; k < all_.size(); ++k) {
-      batches_[k].count = batches_[k].visible;
-      MakeRoom(k);
+    for (size_t b = 0; b < in_use_; ++b) {
+      batches_[b].count = batches_[b].visible;
+      MakeRoom(b);
     }
     for (size_t r = 0; r < rays.size(); ++r) {
       for (size_t s = progress_[r].begin; s < progress_[r].next; ++s) {
         if (Visible(samples_[s])) PlaceSample(rays[r], samples_[s]);
       }
     }
-    for (size_t k = 0; k < all_.size(); ++k) {
-      EvaluateDensityGradient(k);
-      PredictNormals(k);
+    for (size_t b = 0; b < in_use_; ++b) {
+      EvaluateDensityGradient(b);
+      PredictNormals(b);
     }
     for (size_t r = 0; r < rays.size(); ++r) ComposeNormals(rays[r], progress_[r], states[r]);
   }
 
-  void EvaluateDensityGradient(size_t k) {
-    FieldBatch& batch = batches_[k];
+  void EvaluateDensityGradient(size_t b) {
+    FieldBatch& batch = batches_[b];
     const auto n = static_cast<int64_t>(batch.visible);
     if (n == 0) return;
+    const TrainedField& f = FieldOf(batch);
     batch.density_gradient.resize(std::max(batch.density_gradient.size(), 3 * batch.visible_stride));
     for (int64_t begin = 0; begin < n; begin += field::kChunk) {
       const int64_t count = std::min<int64_t>(field::kChunk, n - begin);
-      all_[k]->field->DensityGradient(all_[k]->weights, all_[k]->parameters.grid, PlacesOf(k).From(begin), count, slope_);
+      f.field->DensityGradient(f.weights, f.parameters.grid, PlacesOf(batch).From(begin), count, slope_);
       for (size_t axis = 0; axis < 3; ++axis) {
         std::copy_n(slope_.gradient + axis * slope_.stride, count, batch.density_gradient.data() + axis * batch.visible_stride + begin);
       }
     }
   }
 
-  void PredictNormals(size_t k) {
-    FieldBatch& batch = batches_[k];
-    if (!all_[k]->config.normal_head || batch.visible == 0) return;
+  void PredictNormals(size_t b) {
+    FieldBatch& batch = batches_[b];
+    const TrainedField& f = FieldOf(batch);
+    if (!f.config.normal_head || batch.visible == 0) return;
     batch.predicted_normal.resize(std::max(batch.predicted_normal.size(), field::kNormalRows * batch.visible_stride));
-    all_[k]->field->PredictNormals(all_[k]->weights, batch.color_in.data(), batch.visible_stride, kernel::Padded(static_cast<int64_t>(batch.visible)),
-                                   batch.predicted_normal.data(), batch.visible_stride);
+    f.field->PredictNormals(f.weights, batch.color_in.data(), batch.visible_stride, kernel::Padded(static_cast<int64_t>(batch.visible)),
+                            batch.predicted_normal.data(), batch.visible_stride);
   }
 
   // A sample's column of three rows.
@@ -318,7 +343,7 @@ class RayRenderer::Group {
     for (size_t s = p.begin; s < p.next; ++s) {
       const Sample& sample = samples_[s];
       if (!Visible(sample)) continue;
-      const FieldBatch& batch = batches_[static_cast<size_t>(sample.field)];
+      const FieldBatch& batch = BatchOf(sample);
       const TrainedField& f = *all_[static_cast<size_t>(sample.field)];
       const Eigen::Matrix3d to_unit = f.map.UnitPerEnu(ray.origin_enu + sample.t * ray.direction_enu);
       Add(sample.weight, OutwardNormal<double>(to_unit.transpose() * Column(batch.density_gradient, batch, sample)), state.density_normal);
@@ -329,8 +354,14 @@ class RayRenderer::Group {
   EngineOptions options_;
   SampleMarcher marcher_;
   std::vector<const TrainedField*> all_;
+  // Only the fields that the rays of a call meet have a batch, and batches are used again by other fields: a scene of thousands of blocks would need
+  // gigabytes otherwise.
+  static constexpr size_t kNoBatch = std::numeric_limits<size_t>::max();
   std::vector<FieldBatch> batches_;
-  std::vector<field::Activations> scratch_;
+  size_t in_use_ = 0;             // first batches that have a field
+  std::vector<size_t> batch_of_;  // per field; kNoBatch: the rays do not meet it
+  ScratchPool scratch_;
+  std::vector<size_t> scratch_of_;  // per field that is loaded
   field::DensitySlope slope_;
   std::vector<Sample> samples_;
   std::vector<Progress> progress_;

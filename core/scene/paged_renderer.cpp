@@ -23,7 +23,7 @@ struct Way {
 }  // namespace
 
 PagedRenderer::PagedRenderer(FieldStore& store, const render::RaySegments& segments, base::ThreadPool& threads)
-    : store_(store), segments_(segments), threads_(threads) {}
+    : store_(store), segments_(segments), threads_(threads), splitters_(static_cast<size_t>(threads.size()), render::RaySplitter(segments)) {}
 
 void PagedRenderer::ForGroups(size_t n, const std::function<void(size_t begin, size_t end, int thread)>& body) {
   const int64_t each = (static_cast<int64_t>(n) + threads_.size() - 1) / threads_.size();
@@ -84,9 +84,9 @@ int64_t PagedRenderer::Continue(std::span<const render::Ray> rays, std::span<Ray
     return RunTogether(rays, in_flight, options);
   }
   std::vector<Way> ways(n);
-  ForGroups(n, [&](size_t begin, size_t end, int) {
+  ForGroups(n, [&](size_t begin, size_t end, int thread) {
     for (size_t i = begin; i < end; ++i) {
-      segments_.Split(rays[i], &ways[i].segments);
+      splitters_[static_cast<size_t>(thread)].Split(rays[i], &ways[i].segments);
       while (ways[i].at + 1 < ways[i].segments.size() && ways[i].segments[ways[i].at].t_far <= in_flight[i].at) ++ways[i].at;
     }
   });

@@ -45,6 +45,7 @@ class PagedRenderer {
   FieldStore& store_;
   const render::RaySegments& segments_;
   base::ThreadPool& threads_;
+  std::vector<render::RaySplitter> splitters_;  // one per thread
   // One per thread, kept while the loaded fields and the options stay the same.
   std::vector<std::unique_ptr<render::RayRenderer>> renderers_;
   int64_t renderers_loads_ = -1;

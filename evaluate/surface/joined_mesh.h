@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "surface/mesh.h"
@@ -12,14 +13,21 @@ namespace skyquilt::evaluate::surface {
 
 struct SurfaceMesh {
   struct Atlas {
-    std::vector<uint8_t> jpeg;    // RGB; empty: the tile has no texture
+    std::vector<uint8_t> jpeg;    // RGB; empty: the tile has no texture, or it is in the file
+    std::filesystem::path file;   // of the baked tile, when its texture stays there; otherwise empty
     uint32_t first_triangle = 0;  // triangles of the tile: from here to the first one of the next
   };
 
   SurfaceMesh() = default;
   // Triangles with a corner that is not finite or does not exist are left out.
-  explicit SurfaceMesh(std::vector<skyquilt::surface::TexturedTile> tiles);
+  // files: of the tiles, in their order; then textures are not kept, but read when they are needed. Empty: kept.
+  explicit SurfaceMesh(std::vector<skyquilt::surface::TexturedTile> tiles, const std::vector<std::filesystem::path>& files = {});
+  // Of the finest tiles in these files, one tile with its texture in memory at a time. Throws base::InputError.
+  static SurfaceMesh FromFiles(const std::vector<std::filesystem::path>& files);
 
+  // The texture of a tile; empty: it has none. Throws base::InputError when its file cannot be read any more. Thread-safe.
+  std::vector<uint8_t> JpegOf(size_t tile) const;
+  bool HasTexture(size_t tile) const { return !atlas[tile].jpeg.empty() || !atlas[tile].file.empty(); }
   // Index into `atlas`.
   size_t AtlasOf(uint32_t triangle_index) const;
 

@@ -85,7 +85,7 @@ SurfacePicture SurfacePainter::Paint(const camera::Camera& camera, const geo::Ri
   }
   std::vector<size_t> seen;
   for (size_t tile = 0; tile < pixels_of.size(); ++tile) {
-    if (!pixels_of[tile].empty() && !mesh_.atlas[tile].jpeg.empty()) seen.push_back(tile);
+    if (!pixels_of[tile].empty() && mesh_.HasTexture(tile)) seen.push_back(tile);
   }
   // Only as many tiles at once as there are threads, because their decoded textures are in memory beside the cache.
   const auto batch = static_cast<size_t>(threads.size());
@@ -95,7 +95,7 @@ SurfacePicture SurfacePainter::Paint(const camera::Camera& camera, const geo::Ri
                                     seen.begin() + static_cast<std::ptrdiff_t>(std::min(first + batch, seen.size())));
     threads.ParallelFor(static_cast<int64_t>(tiles.size()), [&](int64_t task, int) {
       const size_t tile = tiles[static_cast<size_t>(task)];
-      if (texture_[tile].Empty()) texture_[tile] = image::DecodeRgb8(mesh_.atlas[tile].jpeg);
+      if (texture_[tile].Empty()) texture_[tile] = image::DecodeRgb8(mesh_.JpegOf(tile));
       const image::Image8& texture = texture_[tile];
       if (texture.Empty()) return;
       for (const uint32_t pixel : pixels_of[tile]) {

@@ -41,7 +41,7 @@ void AddScoresInSpace(const EvaluateInput& input, const SurfaceMesh& mesh, const
 
 }  // namespace
 
-SurfaceScorer::SurfaceScorer(std::vector<skyquilt::surface::TexturedTile> tiles) : mesh_(std::move(tiles)), painter_(mesh_) {}
+SurfaceScorer::SurfaceScorer(SurfaceMesh mesh) : mesh_(std::move(mesh)), painter_(mesh_) {}
 
 image::Image8 SurfaceScorer::Score(const photos::ScoredPhoto& photo, base::ThreadPool& threads) {
   SurfacePicture picture = painter_.Paint(photo.task.camera, photo.task.cam_from_enu, threads);

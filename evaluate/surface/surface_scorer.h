@@ -15,8 +15,8 @@ namespace skyquilt::evaluate::surface {
 
 class SurfaceScorer {
  public:
-  // tiles: of the finest level, as baked: colours of the field at reference exposure.
-  explicit SurfaceScorer(std::vector<skyquilt::surface::TexturedTile> tiles);
+  // mesh: of the finest level, as baked: colours of the field at reference exposure.
+  explicit SurfaceScorer(SurfaceMesh mesh);
   SurfaceScorer(const SurfaceScorer&) = delete;
   SurfaceScorer& operator=(const SurfaceScorer&) = delete;
 

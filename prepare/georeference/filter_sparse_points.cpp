@@ -8,6 +8,7 @@
 
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
+#include "prepare/georeference/points_below.h"
 
 namespace skyquilt::prepare::georeference {
 namespace {
@@ -70,19 +71,14 @@ std::vector<size_t> FilterSparsePoints(std::vector<survey::SparsePoint>& points)
 }
 
 void MeasureAgl(survey::Survey& survey, base::ThreadPool& threads) {
+  const PointsBelow points(survey.points);
   threads.ParallelFor(static_cast<int64_t>(survey.photos.size()), [&](int64_t task, int /*thread*/) {
     survey::Photo& photo = survey.photos[static_cast<size_t>(task)];
     photo.agl_m = std::numeric_limits<double>::quiet_NaN();
     const Eigen::Vector3d centre = photo.cam_from_enu.OriginInSource();
     std::vector<std::pair<double, double>> below;  // horizontal distance squared, height
-    below.reserve(survey.points.size());
-    for (const survey::SparsePoint& point : survey.points) {
-      if (point.x_in_enu.z() < centre.z()) below.emplace_back((point.x_in_enu - centre).head<2>().squaredNorm(), point.x_in_enu.z());
-    }
+    points.Nearest(centre, kAglPoints, &below);
     if (below.size() < kMinAglPoints) return;
-    const auto n_near = std::min<size_t>(kAglPoints, below.size());
-    base::OrderStatistic(below, n_near - 1);
-    below.resize(n_near);
     std::vector<double> heights;
     for (const auto& [distance_squared, z] : below) heights.push_back(z);
     const double height = centre.z() - base::Median(heights);

@@ -51,6 +51,27 @@ def check_poses(skyquilt, out):
     expect(not (out / "poses_work").exists(), "the folder of the photo sets is still there")
 
 
+def check_scale(skyquilt, out):
+    skyquilt.call("bench", "scale", "--quick", "--photos", "24,24", "-o", out, status=2, says="--photos")
+    skyquilt.call("bench", "scale", "--quick", "--photos", "9000", "-o", out, status=2, says=("--photos 9000", "hamlet"))
+    words = ("bench", "scale", "--quick", "--time-budget", "2s", "-o", out)
+    skyquilt.call(*words, says=("Peak memory", "20000 photos"))
+    result = json.loads((out / "scale.json").read_text())
+    expect([row["photos"] for row in result["rows"]] == [12, 24], result["rows"])
+    for row in result["rows"]:
+        names = [stage["name"] for stage in row["stages"]]
+        expect(names == ["simulate", "prepare", "partition", "train", "merge", "products", "surface", "evaluate"], names)
+        expect(all(stage["seconds"] > 0.0 and stage["peak_bytes"] > 1e6 for stage in row["stages"]) and row["blocks"] >= 1, row)
+    expect(result["rows"][1]["area_m2"] > result["rows"][0]["area_m2"], "the area does not grow with the photos")
+    page = (out / "scale.html").read_text()
+    expect("Time of the stages" in page and "<svg" in page, "scale.html lacks its plot")
+    expect([row[0] for row in rows_of(out / "scale_time.csv")][:2] == ["stage", "simulate"], rows_of(out / "scale_time.csv"))
+    expect(not (out / "scale_work" / "24").exists(), "the project of a finished survey is still there")
+    # Saved figures are used again.
+    skyquilt.call(*words, says="24 photos: nothing to do")
+    expect(json.loads((out / "scale.json").read_text())["rows"] == result["rows"], "the saved figures have changed")
+
+
 def test(skyquilt, folder):
     out = folder / "bench"
     for isa in ("portable", None):
@@ -89,6 +110,8 @@ def test(skyquilt, folder):
     expect("How far rounding moves a place" in page and "North pole" in page, "the page lacks its plot or its rows")
     expect(rows[0] == "case,verdict,worst error,allowed,expected,seen" and len(rows) == 13, rows)
     expect(not (out / "work").exists(), "the folder of the cases' surveys is still there")
+
+    check_scale(skyquilt, out)
 
     if shutil.which("colmap"):
         check_poses(skyquilt, out)

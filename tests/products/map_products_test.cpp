@@ -72,6 +72,24 @@ class OtherProgram {
   double transform_[6] = {};
 };
 
+TEST(MapProducts, AreTheSameHoweverManyRaysACallGets) {
+  const TemporaryFolder folder;
+  const AnalyticScene scene;
+  const scene::SceneInfo info = scene.Info({46.0, 7.5, 500.0}, true);
+  size_t most = 0;
+  const RayCaster caster = [&, cast = scene.Caster()](std::span<const render::Ray> rays, std::span<render::RayColor> out) {
+    most = std::max(most, rays.size());
+    cast(rays, out);
+  };
+  const MapProducts few = MakeMapProducts(info, caster, ProductOptions{}, folder / "few", nullptr, 1001);
+  EXPECT_EQ(most, 1001U);
+  const MapProducts many = MakeMapProducts(info, caster, ProductOptions{}, folder / "many", nullptr, RaysPerCall(64));
+  EXPECT_GT(most, 1001U);
+  EXPECT_EQ(few.rays, many.rays);
+  for (int band = 1; band <= 4; ++band) EXPECT_EQ(OtherProgram(few.orthophoto).Band(band), OtherProgram(many.orthophoto).Band(band));
+  EXPECT_EQ(OtherProgram(few.dsm).Band(1), OtherProgram(many.dsm).Band(1));
+}
+
 class AnywhereOnEarth : public testing::TestWithParam<geo::Geodetic> {};
 
 TEST_P(AnywhereOnEarth, PlacesAndHeightsAreRight) {

@@ -204,6 +204,21 @@ TEST_F(MakeSurfaceTest, LittleMemoryGivesTheSameMeshAndTooLittleAnAnswer) {
   EXPECT_NE(ErrorOf<base::UsageError>([&] { MakeSurface(input, threads_); }).find("memory"), std::string::npos);
 }
 
+TEST_F(MakeSurfaceTest, TheMeshOfTheSurveyIsKeptWithinItsMemory) {
+  SurfaceInput input = Input("whole");
+  const SurfaceResult whole = MakeSurface(input, threads_);
+  input = Input("bounded");
+  input.mesh_bytes = 3.0 * 12.0 * static_cast<double>(whole.triangles);  // its triangles alone would nearly fill it
+  const SurfaceResult bounded = MakeSurface(input, threads_);
+  EXPECT_GT(bounded.voxel_m, 1.1 * whole.voxel_m);
+  EXPECT_LT(bounded.triangles, whole.triangles);
+  EXPECT_GT(bounded.triangles, 0);
+  EXPECT_NEAR(bounded.area_m2, whole.area_m2, 0.1 * whole.area_m2);
+  input = Input("tiny_mesh");
+  input.mesh_bytes = 10.0;
+  EXPECT_NE(ErrorOf<base::UsageError>([&] { MakeSurface(input, threads_); }).find("--memory"), std::string::npos);
+}
+
 TEST_F(MakeSurfaceTest, ASceneWithoutSurfaceIsNoError) {
   SurfaceInput input = Input("fog");
   input.caster = [](std::span<const render::Ray>, std::span<render::RayColor> out) {

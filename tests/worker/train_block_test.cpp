@@ -34,6 +34,15 @@ TEST_F(TrainBlockTest, LearnsTheSceneThroughContextAndBlock) {
 
   // The held-out nadir ray over the box's middle ends on its roof, one beside it on the ground.
   const LoadedContext loaded = LoadContext(folder_ / "context.h5");
+  ASSERT_TRUE(loaded.HasSurfaceIntervals(survey_));
+  // Some photos' surfaces can be read alone.
+  const std::vector<int> some = {3, 0, 1};
+  const LoadedContext part = LoadContext(folder_ / "context.h5", &some);
+  ASSERT_TRUE(part.HasSurfaceIntervals(survey_));
+  EXPECT_EQ(part.bands.size(), 3U * kTilesOfPhoto);
+  for (const int photo : some) {
+    EXPECT_EQ(std::memcmp(&part.Band(photo, 0, 0), &loaded.Band(photo, 0, 0), kTilesOfPhoto * sizeof(SurfaceInterval)), 0) << photo;
+  }
   const checkpoint::ArchiveReader reader(folder_ / "block.h5");
   const render::TrainedField field = scene::GetField(reader, folder_ / "block.h5", "");
   render::FieldSet set;

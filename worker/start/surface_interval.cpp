@@ -22,8 +22,7 @@ std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const sur
   render::EngineOptions options;
   options.colour_threshold = 2.0F;  // depth only
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-  constexpr size_t kOfPhoto = static_cast<size_t>(kTileRows) * kTileColumns;
-  std::vector<SurfaceInterval> bands(survey.photos.size() * kOfPhoto, {kUnknown, kUnknown, kUnknown});
+  std::vector<SurfaceInterval> bands(survey.photos.size() * kTilesOfPhoto, {kUnknown, kUnknown, kUnknown});
   // Some photos at a time: the rays of thousands would need gigabytes.
   constexpr size_t kPart = 64, kManyPhotos = 1000;
   std::optional<base::Progress> progress;
@@ -38,8 +37,8 @@ std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const sur
     for (; next < survey.photos.size() && photos.size() < kPart; ++next) photos.push_back(static_cast<int>(next));
     const std::vector<Tile> tiles = TrainingTiles(survey, photos);
     rays.resize(tiles.size());
-    threads.ParallelFor(static_cast<int64_t>(tiles.size() / kOfPhoto), [&](int64_t photo, int) {
-      for (size_t i = static_cast<size_t>(photo) * kOfPhoto; i < (static_cast<size_t>(photo) + 1) * kOfPhoto; ++i) {
+    threads.ParallelFor(static_cast<int64_t>(tiles.size() / kTilesOfPhoto), [&](int64_t photo, int) {
+      for (size_t i = static_cast<size_t>(photo) * kTilesOfPhoto; i < (static_cast<size_t>(photo) + 1) * kTilesOfPhoto; ++i) {
         source.RayThrough(tiles[i].photo, source.TileCentre(tiles[i]), &rays[i].origin_enu, &rays[i].direction_enu);
       }
     });

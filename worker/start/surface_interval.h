@@ -22,6 +22,9 @@ struct SurfaceInterval {
   float back = 0.0F;    // transmittance falls below 0.15
 };
 
+// Tiles of a photo.
+constexpr size_t kTilesOfPhoto = static_cast<size_t>(kTileRows) * kTileColumns;
+
 // Index of a tile in [photo][row][column], kTileRows x kTileColumns per photo.
 constexpr size_t BandIndex(int photo, int row, int column) {
   return (static_cast<size_t>(photo) * kTileRows + static_cast<size_t>(row)) * kTileColumns + static_cast<size_t>(column);
@@ -39,11 +42,18 @@ struct LoadedContext {
   brightness::Response response;
   brightness::Luminance luminance;
   brightness::LuminanceState luminance_state;
-  std::vector<SurfaceInterval> bands;  // [photo][row][column], kTileRows x kTileColumns per photo; empty in old files
+  std::vector<SurfaceInterval> bands;  // [photo][row][column] of the photos that were asked for; empty in old files
+  // Per photo of the survey its place among those of `bands`, -1 for others; empty: `bands` has all photos.
+  std::vector<int32_t> place_in_bands;
 
-  const SurfaceInterval& Band(int photo, int row, int column) const { return bands[BandIndex(photo, row, column)]; }
-  // Whether `bands` has an entry for every tile of the survey.
-  bool HasSurfaceIntervals(const survey::Survey& survey) const { return bands.size() == survey.photos.size() * kTileRows * kTileColumns; }
+  // Of a photo that was asked for.
+  const SurfaceInterval& Band(int photo, int row, int column) const {
+    return bands[BandIndex(place_in_bands.empty() ? photo : place_in_bands[static_cast<size_t>(photo)], row, column)];
+  }
+  // Whether `bands` has an entry for every tile of the survey's photos that were asked for.
+  bool HasSurfaceIntervals(const survey::Survey& survey) const {
+    return place_in_bands.empty() ? bands.size() == survey.photos.size() * kTilesOfPhoto : place_in_bands.size() == survey.photos.size();
+  }
 };
 
 // Renders the depth of the context at every tile centre of the training photos; those of held-out photos, from whose places nothing is rendered, are

@@ -12,7 +12,8 @@
 namespace skyquilt::worker {
 namespace {
 
-constexpr size_t kMostPoints = 12'000;
+// Points that are looked at: enough for every photo to have some hundred sightings, of which those of neighbours tie it to the others.
+constexpr size_t kFewestPoints = 12'000, kPointsOfPhoto = 12;
 constexpr int kPointReach = 1;               // pixels on each side of a point's pixel that are averaged
 constexpr int kFewestSightings = 8;          // points per photo: with fewer its gain is not estimated
 constexpr int kRounds = 6;                   // of reweighting
@@ -56,9 +57,37 @@ bool LightAround(const image::PixelCache& pixels, size_t photo, const Eigen::Vec
   return true;
 }
 
+// A cone around all that a photo can show, so that of many photos and points most pairs need no projection.
+class ViewCone {
+ public:
+  ViewCone(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu)
+      : eye_(cam_from_enu.OriginInSource()), axis_(cam_from_enu.rotation.conjugate() * Eigen::Vector3d::UnitZ()) {
+    constexpr int kSteps = 8;
+    constexpr double kSlack = 0.05;
+    double least = 1.0;  // cosine of the widest angle from the axis
+    for (int i = 0; i <= kSteps; ++i) {
+      const double x = static_cast<double>(camera.width) * i / kSteps, y = static_cast<double>(camera.height) * i / kSteps;
+      for (const Eigen::Vector2d& pixel :
+           {Eigen::Vector2d(x, 0.0), Eigen::Vector2d(x, camera.height), Eigen::Vector2d(0.0, y), Eigen::Vector2d(camera.width, y)}) {
+        least = std::min(least, camera.RayFromImg(pixel).normalized().z());
+      }
+    }
+    least_cosine_ = least - kSlack;
+  }
+  bool MayShow(const Eigen::Vector3d& x_in_enu) const {
+    const Eigen::Vector3d to = x_in_enu - eye_;
+    return to.dot(axis_) >= least_cosine_ * to.norm();
+  }
+
+ private:
+  Eigen::Vector3d eye_, axis_;
+  double least_cosine_ = -1.0;
+};
+
 std::vector<Sighting> FindSightings(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                                     const brightness::Response& response, base::ThreadPool& threads) {
-  const size_t stride = std::max<size_t>(1, survey.points.size() / kMostPoints);
+  const size_t wanted = std::max(kFewestPoints, kPointsOfPhoto * survey.photos.size());
+  const size_t stride = std::max<size_t>(1, survey.points.size() / wanted);
   // From above, a photo sees nearly all points in its frame. Looking level, it sees many walls from behind: there only what it observed counts.
   const bool observed_only = !survey.tracks.Empty() && survey::LooksLevel(survey);
   std::vector<std::vector<Sighting>> per_photo(survey.photos.size());
@@ -67,8 +96,10 @@ std::vector<Sighting> FindSightings(const survey::Survey& survey, const image::P
     const survey::Photo& p = survey.photos[photo];
     if (p.is_test) return;
     const camera::Camera& camera = source.CameraOf(static_cast<int>(photo));
+    const ViewCone cone(camera, p.cam_from_enu);
     for (size_t i = 0; i < survey.points.size(); i += stride) {
       if (observed_only && std::ranges::find(survey.tracks.PhotosOf(i), static_cast<int32_t>(photo)) == survey.tracks.PhotosOf(i).end()) continue;
+      if (wanted > kFewestPoints && !cone.MayShow(survey.points[i].x_in_enu)) continue;
       const auto position = camera.ImgFromCam(p.cam_from_enu * survey.points[i].x_in_enu);
       std::array<double, 3> light{};
       if (!position || !(position->x() >= 0.0 && position->y() >= 0.0 && position->x() < camera.width && position->y() < camera.height)) continue;

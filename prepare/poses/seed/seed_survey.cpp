@@ -80,7 +80,7 @@ void SetPlaces(const SeedInput& input, const std::vector<geo::Geodetic>& tags, s
   }
 }
 
-std::vector<Eigen::Vector3d> RaysOf(const SeedSurvey& survey, const bundle::IndexedPair& pair, size_t side, size_t step) {
+std::vector<Eigen::Vector3d> RaysOf(const SeedSurvey& survey, const SeedPair& pair, size_t side, size_t step) {
   const uint32_t photo = side == 0 ? pair.a : pair.b;
   const bundle::BundleLens& lens = survey.lenses[static_cast<size_t>(survey.photos[photo].lens)];
   std::vector<Eigen::Vector3d> rays;
@@ -157,7 +157,7 @@ bool MakeSeedSurvey(const SeedInput& input, SeedSurvey* survey, std::string* rea
     *reason = "no two photos have enough matches";
     return false;
   }
-  for (const bundle::IndexedPair& pair : survey->pairs) {
+  for (const SeedPair& pair : survey->pairs) {
     const size_t step = std::max<size_t>(1, (pair.features.size() + kMaxRays - 1) / kMaxRays);
     survey->rays.push_back({pair.a, pair.b, RaysOf(*survey, pair, 0, step), RaysOf(*survey, pair, 1, step)});
   }
@@ -225,7 +225,7 @@ bundle::BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& star
   std::vector<bundle::IndexedPair> pairs(survey.pairs.size());
   threads.ParallelFor(static_cast<int64_t>(pairs.size()), [&](int64_t k, int) {
     base::ThrowIfCancelled();
-    const bundle::IndexedPair& pair = survey.pairs[static_cast<size_t>(k)];
+    const SeedPair& pair = survey.pairs[static_cast<size_t>(k)];
     const PairRays rays{pair.a, pair.b, RaysOf(survey, pair, 0, 1), RaysOf(survey, pair, 1, 1)};
     const std::vector<char> like = MovesLikeOthers(rays, start.views);
     bundle::IndexedPair& kept = pairs[static_cast<size_t>(k)];

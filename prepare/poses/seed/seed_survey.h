@@ -1,6 +1,9 @@
 // From the input of the seeding to what the adjustment works on: photos by index, positions in ENU, sampled rays, directions to begin with.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,13 +15,19 @@
 
 namespace skyquilt::prepare::poses {
 
+// Photos a and b by index, and their matches in the input, of which there is one copy: those of thousands of photos take gigabytes.
+struct SeedPair {
+  uint32_t a = 0, b = 0;
+  std::span<const std::array<uint32_t, 2>> features;
+};
+
 // The input with indices in place of ids. Keeps a pointer to the input.
 struct SeedSurvey {
   const SeedInput* input = nullptr;
   std::vector<bundle::BundlePhoto> photos;  // none placed; positions in ENU about the photo in the middle
   std::vector<bundle::BundleLens> lenses;
-  std::vector<bundle::IndexedPair> pairs;  // without those of a photo with itself or with fewer than kLeastPairMatches matches
-  std::vector<PairRays> rays;              // at most kMaxRays of each pair
+  std::vector<SeedPair> pairs;  // without those of a photo with itself or with fewer than kLeastPairMatches matches
+  std::vector<PairRays> rays;   // at most kMaxRays of each pair
 };
 
 constexpr size_t kLeastPairMatches = 15;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/base/random.h"
+#include "products/ray_caster.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -109,6 +110,21 @@ TEST(RayRequest, RefusesOtherBytes) {
   // The number of rays comes after id, options and two flags.
   for (size_t i = 0; i < 8; ++i) many[8 + 8 + 4 + sizeof(render::Concealing) + 3 + i] = '\x7f';
   EXPECT_THROW(RayRequestFromBytes(many), std::runtime_error);
+}
+
+// A rank has one request that it renders and the next one.
+RC_GTEST_PROP(RaysPerRequestProperty, MapsKeepEveryRankBusy, ()) {
+  const int ranks = *rc::gen::inRange(1, 513);
+  const size_t rays = products::RaysPerCall(ranks);
+  RC_ASSERT(rays / RaysPerRequest(rays, ranks) >= 2 * static_cast<size_t>(ranks));
+}
+
+RC_GTEST_PROP(RaysPerRequestProperty, SmallPicturesAreSharedToo, ()) {
+  const int ranks = *rc::gen::inRange(1, 65);
+  const auto rays = *rc::gen::inRange<size_t>(0, 3'000'000);
+  const size_t each = RaysPerRequest(rays, ranks);
+  RC_ASSERT(each >= 512U && each <= 16'384U);
+  if (rays >= 4U * 512U * static_cast<size_t>(ranks)) RC_ASSERT(rays / each >= 4U * static_cast<size_t>(ranks));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <numeric>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -95,6 +96,28 @@ TEST_F(Archive, KeepsEveryBit) {
     EXPECT_TRUE(Holds(reader, content)) << n;
     EXPECT_EQ(reader.Shape("table/level0"), (std::vector<int64_t>{static_cast<int64_t>(n)}));
   }
+}
+
+TEST_F(Archive, ReadsTheRowsThatAreAskedFor) {
+  // Larger than a chunk.
+  constexpr int64_t kRows = 700, kEach = 2 * 500;
+  std::vector<float> values(static_cast<size_t>(kRows * kEach));
+  for (size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
+  ArchiveWriter writer("context", 1);
+  writer.Put("bands", values, {kRows, 2, 500});
+  writer.Commit(folder_ / "a.h5");
+  const ArchiveReader reader(folder_ / "a.h5");
+  for (const std::vector<int64_t>& rows : {std::vector<int64_t>{}, {0}, {699}, {0, 1, 2, 5, 300, 301, 698, 699}}) {
+    std::vector<float> expected;
+    for (const int64_t row : rows) expected.insert(expected.end(), values.begin() + row * kEach, values.begin() + (row + 1) * kEach);
+    EXPECT_EQ(reader.FloatRows("bands", rows), expected);
+  }
+  std::vector<int64_t> all(static_cast<size_t>(kRows));
+  std::iota(all.begin(), all.end(), 0);
+  EXPECT_EQ(reader.FloatRows("bands", all), reader.Floats("bands"));
+  EXPECT_THROW(reader.FloatRows("bands", std::vector<int64_t>{1, 1}), std::logic_error);
+  EXPECT_THROW(reader.FloatRows("bands", std::vector<int64_t>{700}), std::logic_error);
+  EXPECT_THROW(reader.FloatRows("none", std::vector<int64_t>{0}), base::InputError);
 }
 
 TEST_F(Archive, ListsItsContent) {

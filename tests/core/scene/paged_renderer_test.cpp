@@ -105,7 +105,9 @@ TEST_P(PagedRendererTest, LittleMemoryGivesTheSameBits) {
     EXPECT_TRUE(SameBits(render::FinalColor(in_flight[i].state), whole[i])) << i;
   }
   EXPECT_LE(small.peak_bytes(), enough);
-  EXPECT_GT(small.loads(), kRows * kColumns + 1) << "blocks are loaded again when they are needed";
+  // Rays through opaque blocks end before they come to one that was unloaded.
+  const bool opaque = std::get<2>(GetParam()) > 0.0;
+  if (!opaque) EXPECT_GT(small.loads(), kRows * kColumns + 1) << "blocks are loaded again when they are needed";
 }
 
 TEST_P(PagedRendererTest, ManyOwnersGiveTheSameBits) {
@@ -181,7 +183,7 @@ RC_GTEST_PROP(RaySegmentsProperty, SegmentsCoverTheRayAndListItsBlocks, ()) {
   ray.direction_enu.normalize();
   const render::RaySegments segments(outlines);
   std::vector<render::RaySegment> found;
-  segments.Split(ray, &found);
+  render::RaySplitter(segments).Split(ray, &found);
   RC_ASSERT(!found.empty());
   RC_ASSERT(std::isinf(found.back().t_far));
   double from = 0.0;
@@ -193,10 +195,11 @@ RC_GTEST_PROP(RaySegmentsProperty, SegmentsCoverTheRayAndListItsBlocks, ()) {
     const std::span<const int> named = segments.Blocks(found[i].set);
     for (int k = 0; k < n; ++k) {
       const render::TrainedField& b = blocks[static_cast<size_t>(k)];
-      const bool inside = (place.head<2>().array() > b.box.min_enu.head<2>().array() - b.blend_m + 1e-9).all() &&
+      const bool level = place.z() > 1e-9 && place.z() < 3.0 - 1e-9, not_level = place.z() < -1e-9 || place.z() > 3.0 + 1e-9;
+      const bool inside = level && (place.head<2>().array() > b.box.min_enu.head<2>().array() - b.blend_m + 1e-9).all() &&
                           (place.head<2>().array() < b.box.max_enu.head<2>().array() + b.blend_m - 1e-9).all();
       if (inside) RC_ASSERT(std::find(named.begin(), named.end(), k) != named.end());
-      const bool outside = (place.head<2>().array() < b.box.min_enu.head<2>().array() - b.blend_m - 1e-9).any() ||
+      const bool outside = not_level || (place.head<2>().array() < b.box.min_enu.head<2>().array() - b.blend_m - 1e-9).any() ||
                            (place.head<2>().array() > b.box.max_enu.head<2>().array() + b.blend_m + 1e-9).any();
       if (outside) RC_ASSERT(std::find(named.begin(), named.end(), k) == named.end());
     }

@@ -3,10 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <string>
 
+#include "core/base/errors.h"
 #include "evaluate/surface/photo_errors.h"
+#include "surface/tile_store.h"
 #include "tests/evaluate/photos/nadir_view.h"
 #include "tests/evaluate/surface/surface_sample.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skyquilt::evaluate::surface {
 namespace {
@@ -57,6 +62,31 @@ TEST(SurfacePainter, ShowsTheTextureWhereItIs) {
     ExpectColor(picture, x, 50, {0, 0, 1});
     ExpectColor(picture, x + 56, 50, {1, 1, 1});
   }
+}
+
+TEST(SurfacePainter, TexturesThatStayInTheirFilesLookTheSame) {
+  const TemporaryFolder folder;
+  base::ThreadPool threads(2);
+  const std::vector<skyquilt::surface::TexturedTile> tiles = {PaintedTile(kWest, FourColors()), PlateTile(kEast)};  // the eastern one has no texture
+  std::vector<std::filesystem::path> files;
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    files.push_back(folder / (std::to_string(i) + ".bin"));
+    skyquilt::surface::SaveBakedTile({tiles[i], {}}, files.back());
+  }
+  const SurfaceMesh kept(tiles), read = SurfaceMesh::FromFiles(files);
+  EXPECT_TRUE(read.atlas[0].jpeg.empty());
+  EXPECT_TRUE(read.HasTexture(0));
+  EXPECT_FALSE(read.HasTexture(1));
+  EXPECT_EQ(read.JpegOf(0), kept.JpegOf(0));
+  const photos::TrainingView view = photos::NadirView(0, 0, 40);
+  const SurfacePicture a = SurfacePainter(kept).Paint(view.camera, view.cam_from_enu, threads);
+  const SurfacePicture b = SurfacePainter(read).Paint(view.camera, view.cam_from_enu, threads);
+  EXPECT_EQ(a.has_mesh, b.has_mesh);
+  for (size_t i = 0; i < a.colors.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) ASSERT_EQ(a.colors[i].rgb_srgb[c], b.colors[i].rgb_srgb[c]) << i;
+  }
+  std::filesystem::remove(files[0]);
+  EXPECT_THROW(read.JpegOf(0), base::InputError);
 }
 
 TEST(SurfacePainter, ColorsBetweenTwoPixelsAreInterpolated) {

@@ -146,6 +146,10 @@ TEST_F(ViewCountTest, TheBackgroundShowsCoarseColoursWhereOnePhotoLookedAndNearO
   EXPECT_NEAR(down_at(80.0)[1], 80.0F / 255.0F, 0.01F);
   EXPECT_NEAR(down_at(-300.0)[1], 80.0F / 255.0F, 0.02F) << "beyond the photos the colour of their edge is continued";
   EXPECT_EQ(background.Color({0.0, 0.0, 50.0}, {1.0, 0.0, 0.1}), background.mean_srgb) << "the sky";
+  // The same when photos are read in parts.
+  const scene::Background parts = MakeBackground(*source_, survey_, SurfaceOfPoints(survey_), {}, 1, threads, 1);
+  EXPECT_EQ(parts.rgb_srgb, background.rgb_srgb);
+  EXPECT_EQ(parts.mean_srgb, background.mean_srgb);
   const scene::Background flat = MakeBackground(*source_, survey_, {}, {}, 1, threads);
   EXPECT_EQ(flat.Color({0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}), flat.mean_srgb) << "without points";
 }

@@ -34,7 +34,6 @@ struct SurfaceInput {
   double memory_bytes = 0.0;                          // the limit, of which the fields of the scene may take half
   std::string work_key;                               // identity of scene and options: results of another key are not used
   std::filesystem::path work_folder;                  // results of finished steps, for going on after an interruption
-  std::filesystem::path maps_folder;                  // of orthophoto.tif and dsm.tif, for SurfaceOptions::odm_names
   std::filesystem::path out_folder;
 };
 

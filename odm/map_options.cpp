@@ -27,7 +27,7 @@ void ApplyPoses(const Request& request, const Dataset& dataset, const Effort& ef
     throw base::UsageError("--camera-lens " + lens + " cannot be used: photos of all directions have to be cut into plain ones first");
   }
   static const std::map<std::string, std::string> models = {
-      {"perspective", "RADIAL"}, {"brown", "FULL_OPENCV"}, {"fisheye", "RADIAL_FISHEYE"}, {"fisheye_opencv", "OPENCV_FISHEYE"}};
+      {"perspective", "RADIAL"}, {"brown", "OPENCV"}, {"fisheye", "RADIAL_FISHEYE"}, {"fisheye_opencv", "OPENCV_FISHEYE"}};
   if (const auto model = models.find(lens); model != models.end()) prepare->camera_model = model->second;
 }
 

@@ -26,8 +26,10 @@ std::string FileOf(const Request& request, const std::string& option, const fs::
 void CountPhotos(const fs::path& project, base::ThreadPool& threads, Dataset* dataset) {
   double pixels = 0.0;
   int known = 0;
-  for (const prepare::input::InputFile& file :
-       prepare::input::ListInput(dataset->images, {.skip = {project}, .masks = {}, .patterns = {}}, threads)) {
+  // As 'skyquilt prepare' finds them.
+  const fs::path inner = dataset->images / "images";
+  const fs::path root = fs::is_directory(inner) ? inner : dataset->images;
+  for (const prepare::input::InputFile& file : prepare::input::ListInput(root, {.skip = {project}, .masks = {}, .patterns = {}}, threads)) {
     if (!file.Taken()) continue;
     ++dataset->photos;
     if (file.width <= 0 || file.height <= 0) continue;

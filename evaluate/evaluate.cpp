@@ -100,6 +100,15 @@ void ScorePhotos(const PhotoLoop& loop, const std::vector<int>& held_out, base::
   progress.Finish(fmt::format("PSNR {:.2f} dB, coverage {:.1f} %", loop.scores.Psnr(), 100.0 * loop.scores.Coverage()));
 }
 
+// The times up to this stage, and of this one (here_s: without what earlier runs did) up to the writing of the report, which takes seconds.
+RunTimes WithEvaluation(RunTimes times, double seconds, double here_s) {
+  for (StageTimes& stage : times.stages) {
+    if (stage.stage == "evaluate") stage.took_s = seconds;
+  }
+  times.used_s += here_s;
+  return times;
+}
+
 }  // namespace
 
 metrics::Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads) {
@@ -121,8 +130,10 @@ metrics::Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads)
   std::optional<ortho::OrthoResult> map = ortho::ScoreOrtho(input.project_folder / "products", *input.survey, input.scene->info(), threads);
   if (map) metrics.ortho = map->scores;
   metrics.kept_points = photos::MeasureKeptPoints(*input.scene, *input.survey, *input.pixels, scorer.area().boxes, threads);
-  metrics.evaluate_seconds = saver.earlier_s() + std::chrono::duration<double>(Clock::now() - start).count();
+  const double here_s = std::chrono::duration<double>(Clock::now() - start).count();
+  metrics.evaluate_seconds = saver.earlier_s() + here_s;
 
+  if (input.times != nullptr) metrics.times = WithEvaluation(*input.times, metrics.evaluate_seconds, here_s);
   metrics::Summarise(input, scores, &metrics);
   for (const metrics::Warning& warning : metrics.warnings) base::LogWarning("{}. {}", warning.finding, warning.advice);
   std::vector<control::MarkPicture> marks;

@@ -9,6 +9,7 @@
 #include "core/scene/train_report.h"
 #include "core/survey/survey.h"
 #include "evaluate/evaluate_options.h"
+#include "evaluate/run_times.h"
 #include "partition/block.h"
 
 namespace skyquilt::evaluate {
@@ -25,7 +26,8 @@ struct EvaluateInput {
   EvaluateOptions options;
   // Where the scores so far are saved, for an evaluation of the same key to continue from; its folder must exist. Empty: they are not saved.
   std::filesystem::path progress_file = {};
-  std::string progress_key = {};  // names whatever the scores depend on but the list of photos
+  std::string progress_key = {};    // names whatever the scores depend on but the list of photos
+  const RunTimes* times = nullptr;  // of a run within a total time, up to this stage; null: of no such run
 
   std::filesystem::path ReportFolder() const { return project_folder / "report"; }
 };

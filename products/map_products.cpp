@@ -23,7 +23,6 @@ namespace skyquilt::products {
 namespace {
 
 constexpr float kNoHeight = -9999.0F;
-constexpr double kMostSurfaceCells = 8e6;  // of the surface that photos are laid on, where it is finer than the scene's detail
 
 gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const scene::MapHeights& heights, const gis::MapGrid& grid) {
   gis::GeoTiffSpec spec;
@@ -119,39 +118,62 @@ void WriteFieldOrthophoto(const scene::SceneInfo& info, const FieldMap& field, c
   ortho.Close();
 }
 
-// Cells outside the cutline have no data.
-void WriteFieldDsm(const scene::SceneInfo& info, const FieldMap& field, const gis::Boundary* cutline, const ProductOptions& options,
-                   const std::filesystem::path& file) {
-  DsmWriter dsm(info, field.grid, options, file);
-  const std::vector<uint8_t> inside = cutline != nullptr ? cutline->Mask(field.grid) : std::vector<uint8_t>();
+// Height of one cell of the surface model, of those of finer cells within it (changed): the upper middle one, so that a cell on the edge of a roof
+// has the height of the roof or of the ground and none between; kNoHeight if most have none.
+float HeightOfCell(std::vector<float>* finite, size_t cells) {
+  if (2 * finite->size() < cells || finite->empty()) return kNoHeight;
+  const auto middle = finite->begin() + static_cast<std::ptrdiff_t>(finite->size() / 2);
+  std::nth_element(finite->begin(), middle, finite->end());
+  return *middle;
+}
+
+// The surface in cells of the given grid, which are as large as the field's or larger. Cells outside one of the boundaries have no data.
+void WriteFieldDsm(const scene::SceneInfo& info, const FieldMap& field, const gis::MapGrid& grid, std::span<const gis::Boundary> boundaries,
+                   const ProductOptions& options, const std::filesystem::path& file) {
+  DsmWriter dsm(info, grid, options, file);
+  std::vector<uint8_t> inside(grid.size(), 1);
+  for (const gis::Boundary& boundary : boundaries) {
+    const std::vector<uint8_t> mask = boundary.Mask(grid);
+    for (size_t cell = 0; cell < inside.size(); ++cell) inside[cell] &= mask[cell];
+  }
+  const double scale = grid.resolution_m / field.grid.resolution_m;
+  const double column_offset = (grid.left - field.grid.left) / field.grid.resolution_m;
+  const double row_offset = (field.grid.top - grid.top) / field.grid.resolution_m;
+  const auto bound = [scale](double offset, int index, int limit) {
+    return std::clamp(static_cast<int>(std::lround(offset + scale * index)), 0, limit);
+  };
   std::vector<float> rows;
-  for (int first_row = 0; first_row < field.grid.height; first_row += gis::GeoTiffWriter::kTile) {
-    const int n_rows = std::min(gis::GeoTiffWriter::kTile, field.grid.height - first_row);
-    const size_t begin = field.grid.Index(0, first_row);
-    rows.assign(field.grid.Index(0, n_rows), kNoHeight);
-    for (size_t i = 0; i < rows.size(); ++i) {
-      const float height_m = field.height_m[begin + i];
-      if (std::isfinite(height_m) && (inside.empty() || inside[begin + i] != 0)) rows[i] = height_m;
+  std::vector<float> finite;
+  for (int first_row = 0; first_row < grid.height; first_row += gis::GeoTiffWriter::kTile) {
+    const int n_rows = std::min(gis::GeoTiffWriter::kTile, grid.height - first_row);
+    rows.assign(grid.Index(0, n_rows), kNoHeight);
+    for (int row = first_row; row < first_row + n_rows; ++row) {
+      const int begin_row = bound(row_offset, row, field.grid.height);
+      const int end_row = bound(row_offset, row + 1, field.grid.height);
+      for (int column = 0; column < grid.width; ++column) {
+        if (inside[grid.Index(column, row)] == 0) continue;
+        const int begin_column = bound(column_offset, column, field.grid.width);
+        const int end_column = bound(column_offset, column + 1, field.grid.width);
+        finite.clear();
+        for (int y = begin_row; y < end_row; ++y) {
+          for (int x = begin_column; x < end_column; ++x) {
+            if (const float height_m = field.height_m[field.grid.Index(x, y)]; std::isfinite(height_m)) finite.push_back(height_m);
+          }
+        }
+        const auto cells = static_cast<size_t>(end_row - begin_row) * static_cast<size_t>(end_column - begin_column);
+        rows[grid.Index(column, row - first_row)] = HeightOfCell(&finite, cells);
+      }
     }
     dsm.WriteRows(first_row, n_rows, &rows);
   }
   dsm.Close();
 }
 
-// Edges of roofs are found between the cells of the scene's detail, so the surface has cells of half of it, unless they are many or the user wants
-// larger ones.
-gis::MapGrid PlanSurfaceGrid(const scene::SceneInfo& info, const ProductOptions& options) {
-  ProductOptions own = options;
-  own.resolution_m = 0.0;
-  const gis::MapGrid coarse = PlanMapGrid(info, own);
-  own.resolution_m = 4.0 * static_cast<double>(coarse.size()) <= kMostSurfaceCells ? 0.5 * coarse.resolution_m : coarse.resolution_m;
-  own.resolution_m = std::max(own.resolution_m, options.resolution_m);
-  return PlanMapGrid(info, own);
-}
-
-// The scene as it is seen straight down is the surface that the photos are laid on, so it is kept in memory.
+// The scene as it is seen straight down is the surface that the photos are laid on, so it is kept in memory. The surface model has cells of
+// dsm_grid, those of the other maps of heights.
 void PaintFromPhotos(const scene::SceneInfo& info, const RayCaster& caster, const std::optional<gis::Boundary>& boundary,
-                     const ProductOptions& options, const MapPhotos& photos, const std::filesystem::path& folder, MapProducts* products) {
+                     const gis::MapGrid& dsm_grid, const ProductOptions& options, const MapPhotos& photos, const std::filesystem::path& folder,
+                     MapProducts* products) {
   const gis::MapGrid& grid = products->grid;
   FieldMap field{grid, std::vector<uint8_t>(4 * grid.size()), std::vector<float>(grid.size())};
   RenderCells(info, caster, boundary, options.min_opacity, "surface model", products, [&](int first_row, int /*n_rows*/, PaintedCells& band) {
@@ -162,7 +184,11 @@ void PaintFromPhotos(const scene::SceneInfo& info, const RayCaster& caster, cons
   });
   products->painted = WritePhotoOrthophoto(info, photos.survey, field, options, boundary, photos.memory, folder, photos.threads);
   if (!products->painted) WriteFieldOrthophoto(info, field, products->orthophoto);
-  if (options.dsm) WriteFieldDsm(info, field, products->painted ? &products->painted->cutline : nullptr, options, products->dsm);
+  if (!options.dsm) return;
+  std::vector<gis::Boundary> boundaries;
+  if (boundary) boundaries.push_back(*boundary);
+  if (products->painted) boundaries.push_back(products->painted->cutline);
+  WriteFieldDsm(info, field, dsm_grid, boundaries, options, products->dsm);
 }
 
 }  // namespace
@@ -186,19 +212,22 @@ MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caste
                             const MapPhotos* photos) {
   MapProducts products;
   const bool from_photos = options.ortho && photos != nullptr && options.ortho_source == "photos";
-  products.grid = from_photos ? PlanSurfaceGrid(info, options) : PlanMapGrid(info, options);
+  products.grid = from_photos ? PlanPhotoSurfaceGrid(info, options) : PlanMapGrid(info, options);
+  gis::MapGrid dsm_grid = from_photos ? PlanHeightGrid(info, options) : products.grid;
   if (!options.ortho && !options.dsm) return products;
   const std::optional<gis::Boundary> boundary = BoundaryOf(products.grid, options);
-  if (boundary) products.grid = CropTo(products.grid, *boundary);
+  if (boundary) {
+    products.grid = CropTo(products.grid, *boundary);
+    dsm_grid = CropTo(dsm_grid, *boundary);
+  }
   base::RequireWritableFolder(folder);
   if (!products.grid.georeferenced)
     base::LogWarning(
         "the survey has no geo-reference, so orthophoto and surface model are in local coordinates without CRS; use photos with GPS tags");
   if (options.ortho) products.orthophoto = folder / "orthophoto.tif";
   if (options.dsm) products.dsm = folder / "dsm.tif";
-  const gis::MapGrid dsm_grid = products.grid;
   if (from_photos) {
-    PaintFromPhotos(info, caster, boundary, options, *photos, folder, &products);
+    PaintFromPhotos(info, caster, boundary, dsm_grid, options, *photos, folder, &products);
   } else {
     RenderToFiles(info, caster, boundary, options, &products);
   }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLatticeSpacing_m = 100.0;
 constexpr int kLatticeCells = 32;
+constexpr double kMostSurfaceCells = 8e6;  // of the surface that photos are laid on, where it is finer than the scene's detail
 
 }  // namespace
 
@@ -53,6 +54,20 @@ gis::MapGrid PlanMapGrid(const scene::SceneInfo& info, const ProductOptions& opt
   }
   extent.SetCells(grid.resolution_m, &grid);
   return grid;
+}
+
+gis::MapGrid PlanPhotoSurfaceGrid(const scene::SceneInfo& info, const ProductOptions& options) {
+  ProductOptions own = options;
+  own.resolution_m = 0.0;
+  const gis::MapGrid coarse = PlanMapGrid(info, own);
+  own.resolution_m = 4.0 * static_cast<double>(coarse.size()) <= kMostSurfaceCells ? 0.5 * coarse.resolution_m : coarse.resolution_m;
+  own.resolution_m = std::max(own.resolution_m, options.resolution_m);
+  return PlanMapGrid(info, own);
+}
+
+gis::MapGrid PlanHeightGrid(const scene::SceneInfo& info, const ProductOptions& options) {
+  const bool stated = options.resolution_m > 0.0;
+  return stated && options.ortho_source == "photos" ? PlanPhotoSurfaceGrid(info, options) : PlanMapGrid(info, options);
 }
 
 MapRayGenerator::MapRayGenerator(const scene::SceneInfo& info, const gis::MapGrid& grid) : info_(info), grid_(grid), projection_(info.origin, grid) {

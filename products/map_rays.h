@@ -18,6 +18,14 @@ double NiceResolution(double metres);
 // kMostRenderedCells (and options.max_pixels) cells; a requested one with more than options.max_pixels throws base::UsageError with one that fits.
 gis::MapGrid PlanMapGrid(const scene::SceneInfo& info, const ProductOptions& options);
 
+// Grid of the surface that the photos are laid on. Edges of roofs are found between the cells of the scene's detail, so it has cells of half of it,
+// unless they are many or products.resolution_m is larger.
+gis::MapGrid PlanPhotoSurfaceGrid(const scene::SceneInfo& info, const ProductOptions& options);
+
+// Grid of the maps of heights: cells of products.resolution_m, but where the photos give the orthophoto its detail (products.ortho_source), none
+// finer than the surface that they are laid on, as heights come from the scene.
+gis::MapGrid PlanHeightGrid(const scene::SceneInfo& info, const ProductOptions& options);
+
 // Rays of one map row, one per cell inside the scene's box. A ray begins at the top of the blocks at this cell and ends at their bottom.
 struct MapRays {
   std::vector<render::Ray> rays;

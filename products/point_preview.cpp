@@ -119,11 +119,13 @@ PointPreview MakePointPreview(const survey::Survey& survey, const ProductOptions
   const gis::MapProjection projection(info.origin, grid);
   const HeightGrid surface = SurfaceOf(grid, projection, heights);
   const std::vector<char> usable = ChoosePhotosFor(survey, heights, area, flown.height_m, threads);
+  const std::vector<float> slack_m = SightSlack_m(surface, threads);
   PhotoMap painter({.survey = survey,
                     .usable = usable,
                     .grid = grid,
                     .projection = projection,
                     .surface = surface,
+                    .slack_m = slack_m,
                     .field_rgba = {},
                     .ground_z = ground_z,
                     .flown_height_m = flown.height_m},

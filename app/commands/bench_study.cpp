@@ -21,6 +21,7 @@ struct StudyFlags {
   std::vector<int> positions;            // empty: the study's own
   std::vector<std::string> parts = {"time", "steps"};
   std::vector<std::string> variants;  // of --priors and --variants; empty: all
+  std::vector<std::string> within;    // of tradeoff: total times; empty: training times are studied
   std::string shapes;                 // empty: the settings' own
   std::vector<int> seeds;             // empty: the settings' own
   bool quick = false, restart = false, keep = false, json = false;
@@ -50,7 +51,8 @@ double BudgetOf(const StudyFlags& flags, double otherwise_s, double quick_s) {
 }
 
 bench::Study Begin(const CommandState& state, const StudyFlags& flags, const StudyCommand& command) {
-  std::vector<config::Override> own = kLean;
+  // Total times are for all outputs.
+  std::vector<config::Override> own = flags.within.empty() ? kLean : std::vector<config::Override>();
   if (flags.quick) own.insert(own.end(), kQuick.begin(), kQuick.end());
   // --config and --set come last, so that the user's values win.
   coordinator::Settings settings;
@@ -164,7 +166,34 @@ bench::StudyBench RunEncodings(bench::Study& study, const StudyFlags& flags) {
   return bench::EncodingsBench(study, options);
 }
 
+bench::StudyBench RunWithinTotals(bench::Study& study, const StudyFlags& flags) {
+  bench::WithinOptions options;
+  for (const std::string& text : flags.within) options.totals_s.push_back(ParseDurationSeconds(text));
+  std::sort(options.totals_s.begin(), options.totals_s.end());
+  for (const std::string& name : QualityPresets()) {
+    if (!flags.quick || name == "fast") options.presets.push_back({name, PresetOverrides(name), {}});
+  }
+  return bench::TradeoffWithin(study, options);
+}
+
+void CheckWithin(const StudyFlags& flags) {
+  for (const std::string& text : flags.within) ParseDurationSeconds(text);
+  if (flags.within.empty()) return;
+  if (!flags.budget.empty())
+    throw base::UsageError("--within and --time-budget exclude each other: one is the time for everything, one that of training");
+  if (!flags.seeds.empty()) throw base::UsageError("--within takes no --seeds: give another seed with --set run.seed=N and another folder");
+}
+
+void AddWithinTotals(CLI::App* command, StudyFlags* flags) {
+  command
+      ->add_option("--within", flags->within,
+                   "instead: compare presets by the clock, each within these total times from photos to report, such as 2min,5min,10min,30min,2h")
+      ->delimiter(',')
+      ->type_name("TIME,...");
+}
+
 bench::StudyBench RunTradeoff(bench::Study& study, const StudyFlags& flags) {
+  if (!flags.within.empty()) return RunWithinTotals(study, flags);
   bench::TradeoffOptions options;
   const std::map<std::string, std::vector<double>> made_for = {
       {"fast", {1.0 / 3.0, 1.0, 3.0}}, {"default", {1.0 / 3.0, 1.0, 3.0, 9.0}}, {"quality", {1.0, 3.0, 9.0}}};
@@ -350,8 +379,11 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                    .footer = "Examples:\n"
                              "  skyquilt bench tradeoff -o out/bench\n"
                              "  skyquilt bench tradeoff --survey out/brighton --time-budget 3min -o out/bench\n"
+                             "  skyquilt bench tradeoff --survey photos/ --within 2min,5min,10min,30min -o out/bench\n"
                              "--time-budget is the training time of variants that change one setting. Presets are trained for a third of it up to\n"
-                             "nine times as long.",
+                             "nine times as long. With --within, only presets are compared, by all the time from photos to report.",
+                   .options = AddWithinTotals,
+                   .check = CheckWithin,
                    .run = RunTradeoff});
   AddStudyCommand(bench, state,
                   {.name = "scales",

@@ -87,6 +87,7 @@ void AddCommands(CLI::App& app, CommandState& state) {
       "  skyquilt run --place town -o out/town\n"
       "  skyquilt info out");
   AddRun(app, state);
+  AddPlan(app, state);
   AddSimulate(app, state);
   AddPrepare(app, state);
   AddPartition(app, state);

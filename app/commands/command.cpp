@@ -210,6 +210,11 @@ void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
       "memory limit per machine, such as 2GiB or 1500MB; default: half of the machine's memory [run.memory_gb]");
 }
 
+void AddWithinFlag(CLI::App& command, const Overrides& overrides) {
+  AddDurationFlag(command, overrides, "--within", {"run.within_s"},
+                  "time for everything, from photos to report, such as 20min or 2h: says first what it plans, and what is given up for it");
+}
+
 void AddTimeBudgetFlag(CLI::App& command, const Overrides& overrides) {
   AddDurationFlag(command, overrides, "--time-budget", {"run.time_budget_s"}, "time for the whole training, such as 90s, 10min or 1h30m");
 }

@@ -65,6 +65,8 @@ void AddStatedFlags(CLI::App& command, const Overrides& overrides);
 void AddBoundaryFlag(CLI::App& command, const Overrides& overrides);
 // --memory.
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides);
+// --within.
+void AddWithinFlag(CLI::App& command, const Overrides& overrides);
 // --time-budget alone, for partition, which makes no more blocks than can be trained in it.
 void AddTimeBudgetFlag(CLI::App& command, const Overrides& overrides);
 // --time-budget, --steps, --checkpoint-every, --memory, --seed, --brightness.
@@ -89,5 +91,6 @@ void AddBench(CLI::App& app, CommandState& state);
 // The subcommands of `bench` that train whole surveys.
 void AddStudyBenches(CLI::App& bench, CommandState& state);
 void AddRun(CLI::App& app, CommandState& state);
+void AddPlan(CLI::App& app, CommandState& state);
 
 }  // namespace skyquilt::app

@@ -3,6 +3,7 @@
 #include "app/commands/command.h"
 #include "coordinator/stages/level_settings.h"
 #include "coordinator/stages/stage.h"
+#include "coordinator/stages/timed_run.h"
 #include "core/base/errors.h"
 #include "viewer/assets.h"
 
@@ -48,6 +49,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   }
   coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
   pipeline.level_settings = state.LoadForLevelPhotos(overrides);
+  coordinator::UseTotalTime(pipeline);
   coordinator::RecallLevelSettings(pipeline);
   coordinator::RequireSameConfiguration(pipeline, "prepare");
   coordinator::RunStages(pipeline, flags.photos, flags.model);
@@ -80,10 +82,12 @@ void AddRun(CLI::App& app, CommandState& state) {
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddBoundaryFlag(*command, overrides);
+  AddWithinFlag(*command, overrides);
   AddTrainingFlags(*command, overrides);
   command->add_flag("--restart", flags->restart, "remove all earlier results in the project folder first");
   command->footer(
       "Examples:\n"
+      "  skyquilt run photos/ -o out --within 20min\n"
       "  skyquilt run photos/ -o out --blocks 2x2 --time-budget 10min --image-width 1000\n"
       "  skyquilt run photos/ --model sparse/0 -o out --blocks 3x3 --time-budget 15min\n"
       "  skyquilt run --place town -o out/town --steps 3000\n"

@@ -82,7 +82,7 @@ void FindAndScore(OpenProject& open, const buildings::PointCloud* cloud, const b
 
 // What limits the maps and the surface of a scene also limits this one. Throws base::InputError.
 surface::SurfaceInput SurfaceInputOf(OpenProject& open, const TrueRays& rays) {
-  const gis::MapGrid grid = products::PlanMapGrid(open.info, open.settings.products);
+  const gis::MapGrid grid = products::PlanHeightGrid(open.info, open.settings.products);
   surface::SurfaceInput input;
   input.options = open.settings.surface;
   input.info = &open.info;

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kFix = "Run the bench again with --restart, or remove this file";
 
 // Options that do not change a result.
-constexpr const char* kIdle[] = {"run.threads",         "run.memory_gb",    "context.checkpoint_every_s", "train.checkpoint_every_s",
+constexpr const char* kIdle[] = {"run.threads",         "run.within_s",     "run.memory_gb", "context.checkpoint_every_s", "train.checkpoint_every_s",
                                  "context.diagnostics", "train.diagnostics"};
 
 void RemoveOldRuns(const std::filesystem::path& folder) {

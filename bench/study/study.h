@@ -88,6 +88,10 @@ struct VariantResult {
   double flat_roof_rms_m = kNone, flat_roof_nmad_m = kNone;      // the same; evaluate::photos::FlatRoofScore
   std::string views;                                             // folder of the pictures that WriteViews makes, relative to FOLDER; may be empty
   std::optional<evaluate::buildings::BuildingScores> buildings;  // when the study measures them
+  // Of runs within a total time, from photos to report: what it took, each stage of it, what was given up, and scores of the products.
+  double wall_seconds = kNone, ortho_psnr_db = kNone, ortho_ssim = kNone, f_score = kNone;
+  std::vector<std::pair<std::string, double>> stage_seconds;
+  std::vector<std::string> given_up;
   // The trainings of which the single numbers are medians; all else is of the first that succeeded. Empty: this is one training.
   std::vector<VariantResult> seeds;
 };
@@ -127,6 +131,9 @@ class Study {
   // The same, and then merges and scores its checkpoints again with the settings of each variant in `merged`. Returns the variant's result first;
   // its failure is that of the others, too. Trains again when the checkpoints were removed before all results were saved.
   std::vector<VariantResult> RunMerged(const Variant& variant, const std::vector<Variant>& merged);
+  // Makes all of the variant as `skyquilt run --within`, from the photos on, and scores it; or reads its saved result. Throws base::UsageError when
+  // the survey was given as a project, which has its poses already, and what RunStages throws; then the same call goes on.
+  VariantResult RunWithin(const Variant& variant, double within_s);
   // A variant that is not trained: `work` fills in its result, or a saved one is read. The project of the pipeline has survey and blocks. Throws what
   // `work` throws; then the same call does it again.
   using UntrainedWork = std::function<void(coordinator::Pipeline& pipeline, VariantResult* result)>;

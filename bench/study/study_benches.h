@@ -67,6 +67,16 @@ struct TradeoffOptions {
 // number of photos.
 StudyBench Tradeoff(Study& study, const TradeoffOptions& options);
 
+// Presets train on photos of different widths, and small images score higher. So all are scored at the width of the settings.
+config::Override ScoringWidth(const Study& study);
+
+struct WithinOptions {
+  std::vector<double> totals_s;        // of the whole run, each
+  std::vector<StudiedPreset> presets;  // without their budgets
+};
+// Measures quality against the time on the clock, from photos to report: every preset within every total, stage by stage.
+StudyBench TradeoffWithin(Study& study, const WithinOptions& options);
+
 struct ScalesOptions {
   std::vector<int> positions = {0, 1, 4, 6};  // per sample, as train.multisample: 0 are points, the others cones
   double budget_s = 60.0;                     // training time of every variant of equal time

@@ -42,6 +42,10 @@ void EachNumber(Result& r, const Each& each) {
   each("scene_parameters", r.scene_parameters);
   each("scene_bytes", r.scene_bytes);
   each("evaluate_seconds", r.evaluate_seconds);
+  each("wall_seconds", r.wall_seconds);
+  each("ortho_psnr_db", r.ortho_psnr_db);
+  each("ortho_ssim", r.ortho_ssim);
+  each("f_score", r.f_score);
 }
 
 }  // namespace
@@ -86,6 +90,8 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
   json["classes"] = ToJson(std::span<const evaluate::metrics::ClassScore>(result.classes));
   json["views"] = result.views;
   if (result.buildings) json["buildings"] = ToJson(*result.buildings);
+  if (!result.stage_seconds.empty()) json["stage_seconds"] = result.stage_seconds;
+  if (!result.given_up.empty()) json["given_up"] = result.given_up;
   json["curve"] = result.curve;
   json["floater_profile"] = result.floater_profile;
   for (const auto& [key, value] :
@@ -135,6 +141,8 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
   result.classes = evaluate::metrics::ClassScoresFromJson(json.value("classes", Json()));
   result.views = json.value("views", "");
   if (json.contains("buildings")) result.buildings = evaluate::buildings::BuildingScoresFromJson(json.at("buildings"));
+  if (json.contains("stage_seconds")) json.at("stage_seconds").get_to(result.stage_seconds);
+  if (json.contains("given_up")) json.at("given_up").get_to(result.given_up);
   json.at("curve").get_to(result.curve);
   json.at("floater_profile").get_to(result.floater_profile);
   for (const auto& [key, value] :

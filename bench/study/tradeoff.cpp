@@ -33,15 +33,6 @@ std::vector<Priced> Prices(const std::vector<VariantResult>& results) {
   return points;
 }
 
-// Presets train on photos of different widths, and small images score higher. So all are scored at the width of the settings.
-config::Override ScoringWidth(const Study& study) {
-  int width = study.settings().run.image_width;
-  if (width == 0) {
-    for (const camera::Camera& camera : study.survey().cameras) width = std::max(width, camera.width);
-  }
-  return {"evaluate.image_width", std::to_string(width)};
-}
-
 // Presets as curves over time, with the front through all of them.
 std::string ParetoChart(const std::vector<std::string>& presets, const std::vector<std::vector<VariantResult>>& by_preset) {
   std::vector<VariantResult> all;
@@ -102,6 +93,14 @@ std::string PresetVerdict(const std::string& preset, const Nearest& nearest) {
 }
 
 }  // namespace
+
+config::Override ScoringWidth(const Study& study) {
+  int width = study.settings().run.image_width;
+  if (width == 0) {
+    for (const camera::Camera& camera : study.survey().cameras) width = std::max(width, camera.width);
+  }
+  return {"evaluate.image_width", std::to_string(width)};
+}
 
 StudyBench Tradeoff(Study& study, const TradeoffOptions& options) {
   StudyBench bench;

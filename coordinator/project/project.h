@@ -34,6 +34,7 @@ struct Project {
   std::filesystem::path MetricsFile() const { return ReportFolder() / "metrics.json"; }
   std::filesystem::path EvaluateProgressFile() const { return folder / "cache" / "evaluate_progress.bin"; }
   std::filesystem::path ConfigFile() const { return folder / "config.toml"; }
+  std::filesystem::path PlanFile() const { return folder / "plan.json"; }
   std::filesystem::path LogFile() const { return folder / "log.txt"; }
   std::filesystem::path StateFolder() const { return folder / ".state"; }
   std::filesystem::path TrainLedgerFile() const { return StateFolder() / "training.json"; }

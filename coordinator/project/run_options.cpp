@@ -11,6 +11,9 @@ std::vector<config::Field<RunOptions>> RunOptions::Fields() {
       {"image_width", &O::image_width, Range{16, 65536}.Or(0), "pixels; photos are scaled down to this width for training and scoring; 0: full size"},
       {"time_budget_s", &O::time_budget_s, Range{0, 1e8},
        "seconds for the whole training, divided between context and blocks; 0: the steps of [context] and [train] decide"},
+      {"within_s", &O::within_s, Range{0, 1e8},
+       "seconds for all stages of 'skyquilt run' together, from photos to report: training gets what the others leave, and what does not fit is made "
+       "smaller or left out; 0: no limit"},
       {"context_share", &O::context_share, Range{0.01, 0.9}, "fraction of the time budget for the context"},
       {"shortest_block_s", &O::shortest_block_s, Range{0.1, 1e6},
        "seconds; every block trains for at least so long, even when many blocks together exceed the time budget"},

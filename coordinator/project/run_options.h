@@ -10,6 +10,7 @@ namespace skyquilt::coordinator {
 struct RunOptions {
   int image_width = 1000;         // pixels; photos are scaled down to this width for training and scoring; 0: full size
   double time_budget_s = 0.0;     // seconds for the whole training; 0: the steps of [context] and [train] decide
+  double within_s = 0.0;          // seconds for all of 'skyquilt run'; 0: the stages take as long as they take
   double context_share = 0.15;    // fraction of the time budget, 0..1
   double shortest_block_s = 2.0;  // seconds that a block trains even when that exceeds the time budget
   double rank_timeout_s = 120.0;  // seconds for which a rank may stand still before the job ends; 0: for ever
@@ -17,7 +18,9 @@ struct RunOptions {
   int threads = 0;         // per machine; 0: every core this process may use
   double memory_gb = 0.0;  // per machine; 0: half of it
 
-  double memory_share = 1.0;  // of the limit, for one of several scenes in the same process; not an option
+  // Not options:
+  double memory_share = 1.0;           // of the limit, for one of several scenes in the same process
+  bool budget_has_everything = false;  // decoding and set-up count in the time budget too; set where the total of the run is given
 
   // For all ranks on this machine together.
   int UsableThreads() const;

@@ -28,6 +28,8 @@ namespace {
 using nlohmann::json;
 
 constexpr int kMaxTries = 3;
+// Of a time budget for all of the stage.
+constexpr double kMostSetupShare = 0.25, kPreviewShare = 0.02;
 
 void RequireMemory(const partition::BlockSet& blocks, const Settings& settings, int threads, int per_host) {
   const double limit = settings.run.MemoryLimitBytes();
@@ -59,8 +61,8 @@ class Training {
       base::LogInfo("pixels of the photos ({}B) are read from disk on demand: with a block they exceed the memory limit of {}B (--memory)",
                     base::FormatCount(static_cast<double>(pixels.FileBytes())), base::FormatCount(settings_.run.MemoryLimitBytes()));
     }
-    // Decoding is not training: the budget starts here.
-    start_ = std::chrono::steady_clock::now();
+    // Decoding is not training: the budget starts here, unless it is for all of the stage.
+    if (!settings_.run.budget_has_everything) start_ = std::chrono::steady_clock::now();
     std::optional<SharedFolder> shared;
     if (comm_.size() > 1) shared.emplace(project_.CheckpointFolder());
     const json setup = {{"project", project_.folder.string()},
@@ -90,8 +92,16 @@ class Training {
 
  private:
   // Seconds of this configuration's training, earlier runs included.
-  // Set-up is not training: what ranks spend on it is not taken from the time budget.
-  void SetAside(double seconds) { start_ += std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds)); }
+  // Set-up is not training: what ranks spend on it is not taken from the time budget, unless that is for all of the stage.
+  void SetAside(double seconds) {
+    if (settings_.run.budget_has_everything) return;
+    start_ += std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+  }
+  // By when the blocks must be trained. The last one still has its own set-up before it, about as long as that of the context.
+  double Deadline() const {
+    const double budget = settings_.run.time_budget_s;
+    return settings_.run.budget_has_everything ? budget - std::min(context_setup_s_, kMostSetupShare * std::max(0.0, budget - Now())) : budget;
+  }
   double Now() const { return spent_before_s_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   // Tells each rank how many threads it has. Returns the smallest number, and in *per_host the largest number of ranks that share a machine.
@@ -138,13 +148,15 @@ class Training {
       throw base::BlockError("the context failed " + std::to_string(kMaxTries) + " times: " + outcome.failure.reason);
     LogField(outcome);
     context_s_ = outcome.result.seconds;
+    context_setup_s_ = outcome.setup_s;
   }
 
-  // The time that this takes is not taken from the blocks' budget.
+  // The time that this takes is not taken from the blocks' budget, unless that is for all of the stage; then it is a small part of it.
   void ShowContext(base::ThreadPool& pool) {
     const auto begin = std::chrono::steady_clock::now();
-    ProvideContextPreview(*input_.survey, *input_.blocks, settings_, project_, context_s_, pool);
-    start_ += std::chrono::steady_clock::now() - begin;
+    const double most_s = settings_.run.budget_has_everything ? kPreviewShare * settings_.run.time_budget_s : context_s_;
+    ProvideContextPreview(*input_.survey, *input_.blocks, settings_, project_, std::min(context_s_, most_s), pool);
+    SetAside(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
 
   void TrainBlocks(const FieldTrainer& trainer, int threads) {
@@ -164,7 +176,7 @@ class Training {
     QueueOptions options;
     options.steps = settings_.run.time_budget_s > 0.0 ? 0 : settings_.train.steps;
     options.has_deadline = settings_.run.time_budget_s > 0.0;
-    options.deadline_s = settings_.run.time_budget_s;
+    options.deadline_s = Deadline();
     options.shortest_s = settings_.run.shortest_block_s;
     options.seconds = settings_.train.seconds;
     options.n_workers = std::max(1, std::min(comm_.size() - 1, static_cast<int>(waiting.size())));
@@ -254,6 +266,7 @@ class Training {
   TrainLedger ledger_;
   double spent_before_s_;
   double context_s_ = 0.0;  // training time of the context
+  double context_setup_s_ = 0.0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

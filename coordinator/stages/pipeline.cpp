@@ -3,6 +3,7 @@
 #include "coordinator/stages/first_picture.h"
 #include "coordinator/stages/stage.h"
 #include "coordinator/stages/stage_bodies.h"
+#include "coordinator/stages/timed_run.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
@@ -74,15 +75,21 @@ void RunStages(Pipeline& pipeline, const std::filesystem::path& photos, const st
   for (const Stage& stage : Stages()) {
     if (stage.name == "simulate") {
       if (photos.empty()) SimulateStage(pipeline, folder);
-    } else if (stage.name == "prepare") {
+      if (pipeline.timed) pipeline.timed->Start(pipeline, folder, model);
+      continue;
+    }
+    if (pipeline.timed) pipeline.timed->Decide(pipeline, stage.name);
+    if (stage.name == "buildings" && !kinds.buildings) continue;
+    if (stage.wanted != nullptr && !stage.wanted(pipeline.settings)) continue;
+    if (pipeline.timed) pipeline.timed->Began(stage.name);
+    if (stage.name == "prepare") {
       PrepareStage(pipeline, folder, model);
       kinds = KindsOf(pipeline);
       if (kinds.along_cameras) LogLevelPhotos(kinds);
-    } else if (stage.name == "buildings" && !kinds.buildings) {
-      continue;
-    } else if (stage.wanted == nullptr || stage.wanted(pipeline.settings)) {
+    } else {
       RunStage(pipeline, stage.name);
     }
+    if (pipeline.timed) pipeline.timed->Ended(pipeline, stage.name);
   }
 }
 

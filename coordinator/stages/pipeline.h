@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@
 #include "tour/export/export_parts.h"
 
 namespace skyquilt::coordinator {
+
+class TimedRun;
 
 struct Pipeline {
   comm::Communicator& comm;
@@ -34,6 +37,8 @@ struct Pipeline {
   std::filesystem::path model = {};
   // Page and files of an exported tour, which the viewer has too: stage "tour" needs it.
   std::function<tour::ExportParts(const Project& project)> tour_parts = {};
+  // Keeps run.within_s in RunStages (timed_run.h); null: the stages take as long as they take.
+  std::shared_ptr<TimedRun> timed = {};
   // Results of "train" and "evaluate"; read from their files when the stage had nothing to do.
   scene::TrainReport training = {};
   evaluate::metrics::Metrics metrics = {};

@@ -7,6 +7,7 @@
 #include "coordinator/scheduler/train_all.h"
 #include "coordinator/stages/first_picture.h"
 #include "coordinator/stages/level_settings.h"
+#include "coordinator/stages/timed_run.h"
 #include "core/base/amounts.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
@@ -184,6 +185,7 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp) {
   const image::PixelCache pixels =
       image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), pipeline.settings.run.image_width, threads);
   const std::optional<scene::TrainReport> training = scene::TryReadTrainReport(project.TrainReport());
+  const std::optional<evaluate::RunTimes> times = pipeline.timed ? std::optional(pipeline.timed->Times()) : std::nullopt;
   const evaluate::EvaluateInput input{.scene = &session.scene(),
                                       .survey = &survey,
                                       .blocks = &blocks,
@@ -194,7 +196,8 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp) {
                                       .vertical = geo::VerticalNamed(pipeline.settings.products.vertical),
                                       .options = pipeline.settings.evaluate,
                                       .progress_file = project.EvaluateProgressFile(),
-                                      .progress_key = ScoresKey(pipeline, stamp)};
+                                      .progress_key = ScoresKey(pipeline, stamp),
+                                      .times = times ? &*times : nullptr};
   pipeline.metrics = evaluate::Evaluate(input, threads);
   const evaluate::metrics::Metrics& metrics = pipeline.metrics;
   base::LogInfo(

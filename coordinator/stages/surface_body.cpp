@@ -22,7 +22,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   SceneSession session(pipeline.comm, project.SceneFile(), run, pipeline.verbose, pipeline.quiet);
   const scene::Scene& scene = session.scene();
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
-  const gis::MapGrid grid = products::PlanMapGrid(scene.info(), settings.products);
+  const gis::MapGrid grid = products::PlanHeightGrid(scene.info(), settings.products);
   surface::SurfaceInput input;
   input.options = settings.surface;
   input.options.maps = settings.surface.maps && KindsOf(pipeline).terrain;

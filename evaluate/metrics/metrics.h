@@ -17,6 +17,7 @@
 #include "evaluate/ortho/ortho_scores.h"
 #include "evaluate/photos/kept_points.h"
 #include "evaluate/photos/photo_score.h"
+#include "evaluate/run_times.h"
 #include "evaluate/surface/surface_scores.h"
 
 namespace skyquilt::evaluate::metrics {
@@ -88,6 +89,7 @@ struct Metrics {
   std::optional<surface::SurfaceScores> surface;       // nothing when no surface was made
   std::optional<buildings::BuildingScores> buildings;  // nothing when no buildings were searched
   std::optional<ortho::OrthoScores> ortho;             // nothing when no orthophoto was made
+  std::optional<RunTimes> times;                       // of a run within a total time; nothing for other runs
 
   double train_seconds = kNotMeasured;
   double samples_per_second = kNotMeasured;
@@ -126,8 +128,8 @@ extern const char* const kRightHalfDefinition;
 
 // Text of metrics.json, keys as in the documentation. UTF-8; invalid bytes in file names are replaced.
 std::string MetricsJson(const Metrics& metrics);
-// Reads metrics.json, except for the statistics of rendering and ground control; of single photos only name and PSNR. An infinite PSNR is read as not
-// measured. Throws base::InputError when the file cannot be read.
+// Reads metrics.json, except for the statistics of rendering, ground control and times; of single photos only name and PSNR. An infinite PSNR is read
+// as not measured. Throws base::InputError when the file cannot be read.
 Metrics ReadMetrics(const std::filesystem::path& file);
 
 }  // namespace skyquilt::evaluate::metrics

@@ -68,6 +68,17 @@ Json KeptPointsJson(const photos::KeptPointErrors& errors) {
   return json;
 }
 
+Json TimesJson(const RunTimes& times) {
+  Json stages = Json::array();
+  for (const StageTimes& stage : times.stages) {
+    stages.push_back({{"stage", stage.stage},
+                      {"planned_s", NumberOrNull(stage.planned_s)},
+                      {"predicted_s", NumberOrNull(stage.predicted_s)},
+                      {"took_s", NumberOrNull(stage.took_s)}});
+  }
+  return {{"within_s", times.within_s}, {"used_s", times.used_s}, {"stages", stages}, {"given_up", times.given_up}};
+}
+
 void PutNumbers(std::span<const KeyedNumber> numbers, const Metrics& metrics, Json* json) {
   for (const auto& [key, member] : numbers) (*json)[key] = NumberOrNull(metrics.*member);
 }
@@ -104,6 +115,7 @@ std::string MetricsJson(const Metrics& metrics) {
   if (metrics.surface) json["surface"] = ToJson(*metrics.surface);
   if (metrics.buildings) json["buildings"] = ToJson(*metrics.buildings);
   if (metrics.ortho) json["orthophoto"] = ToJson(*metrics.ortho);
+  if (metrics.times) json["times"] = TimesJson(*metrics.times);
   PutNumbers(kTraining, metrics, &json);
   json["peak_rss_bytes"] = BytesOrNull(metrics.peak_rss_bytes);
   json["parameters"] = metrics.parameters;

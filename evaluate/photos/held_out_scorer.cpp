@@ -71,7 +71,12 @@ HeldOutScorer::Recordings HeldOutScorer::RecordingsOf(int photo) const {
   return recordings;
 }
 
-PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads) const {
+bool HeldOutScorer::LooksAreAlike() const {
+  return !input_.scene->info().luminance.On() && input_.options.normal_stops == 0.0 && !input_.options.field_normals;
+}
+
+PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads,
+                                         std::vector<render::RayColor>* as_rendered) const {
   const Recordings recordings = RecordingsOf(photo);
   const auto start = std::chrono::steady_clock::now();
   // A field whose encoding has no slope cannot be rendered with normals, not even with those of a head.
@@ -79,6 +84,7 @@ PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, ba
   const scene::Appearance appearance{.look = scene::Rendition::kRecorded, .normals = field_normals};
   std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
   const std::vector<render::RayColor> as_reference = recordings.Differ() ? rendered : std::vector<render::RayColor>();
+  if (as_rendered != nullptr) *as_rendered = rendered;
   ApplyResponse(task.camera, recordings.predicted, rendered, threads);
   const double render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
@@ -108,13 +114,14 @@ std::vector<render::RayColor> HeldOutScorer::RenderNormal(const HeldOutPhoto& ta
 ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& threads) {
   ScoredPhoto scored;
   scored.task = LoadHeldOutPhoto(*input_.survey, *input_.pixels, photo, input_.options.image_width);
-  scored.findings = ScoreRecorded(photo, scored.task, threads);
+  const std::filesystem::path normal_photos = input_.options.normal_photos;
+  const bool shows_normal = keep_normal || !normal_photos.empty();
+  scored.findings = ScoreRecorded(photo, scored.task, threads, shows_normal && LooksAreAlike() ? &scored.normal : nullptr);
   scored.recording = RecordingsOf(photo).predicted;
   PhotoScore& score = scored.findings.score;
   if (lpips_) score.lpips = LpipsOf(*lpips_, scored.task, scored.findings.render);
   if (!scored.findings.true_depth.Empty()) scored.floaters = MeasureFloaterOpacity(*input_.scene, scored.task, scored.findings, threads);
-  const std::filesystem::path normal_photos = input_.options.normal_photos;
-  if (keep_normal || !normal_photos.empty()) scored.normal = RenderNormal(scored.task, threads);
+  if (shows_normal && !LooksAreAlike()) scored.normal = RenderNormal(scored.task, threads);
   if (!normal_photos.empty()) {
     const NormalScore against = ScoreNormal(normal_photos / score.name, scored.normal, scored.findings.scored);
     score.psnr_normal_db = against.psnr_db;

@@ -45,7 +45,10 @@ class HeldOutScorer {
     bool Differ() const { return predicted.log_gain != tagged.log_gain; }
   };
   Recordings RecordingsOf(int photo) const;
-  PhotoResult ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads) const;
+  // Whether the rendering at normal brightness has the colours of the recorded one before the photo's response.
+  bool LooksAreAlike() const;
+  // as_rendered: takes the rendering before the response; may be null.
+  PhotoResult ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads, std::vector<render::RayColor>* as_rendered) const;
   std::vector<render::RayColor> RenderNormal(const HeldOutPhoto& task, base::ThreadPool& threads) const;
 
   const EvaluateInput& input_;

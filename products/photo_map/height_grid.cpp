@@ -1,6 +1,7 @@
 #include "products/photo_map/height_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -13,6 +14,36 @@ constexpr int kBlockCells = 16;            // along a side
 constexpr double kStartCells = 1.5;        // horizontal way from a place that is not looked at
 constexpr double kCentreCells = 0.75;      // more than a line's way inside a cell can be from its point nearest to the cell's centre
 constexpr double kSurfaceStepCells = 6.0;  // between neighbouring cells of one surface, which may be a steep roof
+constexpr double kSlackCells = 1.5;        // of any surface
+constexpr double kSlackPerRoughness = 3.0;
+constexpr int kRoughStride = 4;  // cells between those of the 3 x 3 that a side's roughness is measured by
+
+// Root mean square distance of 3 x 3 heights from their plane; the given cell is in the corner of those cells. Infinite beside the grid's border and
+// where there is no surface.
+double RoughnessOfSide(const HeightGrid& surface, int column, int row, int stride_x, int stride_y) {
+  const double none = std::numeric_limits<double>::infinity();
+  const int last_column = column + 2 * stride_x, last_row = row + 2 * stride_y;
+  if (last_column < 0 || last_row < 0 || last_column >= surface.grid().width || last_row >= surface.grid().height) return none;
+  std::array<double, 9> heights{};
+  double mean = 0.0, slope_x = 0.0, slope_y = 0.0;
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 3; ++x) {
+      const auto height = static_cast<double>(surface.HeightOf(column + x * stride_x, row + y * stride_y));
+      heights[static_cast<size_t>(3 * y + x)] = height;
+      mean += height / 9.0;
+      slope_x += (x - 1) * height / 6.0;
+      slope_y += (y - 1) * height / 6.0;
+    }
+  }
+  double squares = 0.0;
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 3; ++x) {
+      const double off = heights[static_cast<size_t>(3 * y + x)] - mean - (x - 1) * slope_x - (y - 1) * slope_y;
+      squares += off * off;
+    }
+  }
+  return std::isfinite(squares) ? std::sqrt(squares / 6.0) : none;  // 9 heights, 3 of them for the plane
+}
 
 }  // namespace
 
@@ -162,6 +193,22 @@ bool HeightGrid::IsVisible(const Eigen::Vector3d& place, const Eigen::Vector3d& 
       if (block_row < 0 || block_row >= block_rows_) return true;
     }
   }
+}
+
+std::vector<float> SightSlack_m(const HeightGrid& surface, base::ThreadPool& threads) {
+  const gis::MapGrid& grid = surface.grid();
+  const double least_m = kSlackCells * grid.resolution_m;
+  std::vector<float> slack_m(grid.size(), static_cast<float>(least_m));
+  threads.ParallelFor(grid.height, [&](int64_t task, int /*thread*/) {
+    const int row = static_cast<int>(task);
+    for (int column = 0; column < grid.width; ++column) {
+      double plainest_m = std::numeric_limits<double>::infinity();
+      for (const auto& [side_x, side_y] : {std::pair{-1, -1}, std::pair{1, -1}, std::pair{-1, 1}, std::pair{1, 1}})
+        plainest_m = std::min(plainest_m, RoughnessOfSide(surface, column, row, side_x * kRoughStride, side_y * kRoughStride));
+      if (std::isfinite(plainest_m)) slack_m[grid.Index(column, row)] = static_cast<float>(least_m + kSlackPerRoughness * plainest_m);
+    }
+  });
+  return slack_m;
 }
 
 }  // namespace skyquilt::products

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/base/thread_pool.h"
 #include "core/gis/map_grid.h"
 
 namespace skyquilt::products {
@@ -18,6 +19,8 @@ class HeightGrid {
   const gis::MapGrid& grid() const { return grid_; }
   // Of a cell inside the grid; NaN: no surface.
   float HeightOf(int column, int row) const { return heights_[grid_.Index(column, row)]; }
+  // Of all cells, row by row.
+  const std::vector<float>& heights() const { return heights_; }
   // Between the four nearest cell centres bilinearly where they show one surface (highest minus lowest at most two cell sizes: up to 63 degrees),
   // else the height of the nearest cell, so that edges of roofs stay steps. NaN without surface there, and more than half a cell outside the grid's
   // outer edge.
@@ -40,5 +43,10 @@ class HeightGrid {
   std::vector<float> block_highest_;  // of 16 x 16 cells each, -infinity: no surface
   float highest_ = -std::numeric_limits<float>::infinity();
 };
+
+// How far cells may rise above the line of sight from each cell of the surface and not hide it, metres, row-major: a little, and more where the
+// surface is rough on all sides, as crowns of trees are, because such heights are not sure. Beside a roof's edge at least one side is plain, so that
+// nothing of the roof is let through. The same for any number of threads.
+std::vector<float> SightSlack_m(const HeightGrid& surface, base::ThreadPool& threads);
 
 }  // namespace skyquilt::products

@@ -15,9 +15,8 @@
 namespace skyquilt::products {
 namespace {
 
-constexpr double kSlackCells = 1.5;  // of the surface
-constexpr int kTileNodes = 96;       // whose photos are chosen together
-constexpr int kOverlapNodes = 16;    // of tiles, in which seams of neighbours come to agree
+constexpr int kTileNodes = 96;     // whose photos are chosen together
+constexpr int kOverlapNodes = 16;  // of tiles, in which seams of neighbours come to agree
 constexpr int kCandidates = kMostSeen;
 constexpr double kRimShare = 0.08;  // of the shorter side of a photo, where it gives way to others
 constexpr double kRimCost = 0.02;
@@ -44,8 +43,7 @@ struct NodeView {
 // Finds the photos that see a place.
 class ViewFinder {
  public:
-  ViewFinder(const PhotoMapInput& input)
-      : input_(input), eyes_map_(EyesOnMap(input.survey, input.projection)), slack_m_(SightSlack_m(input.surface)) {
+  ViewFinder(const PhotoMapInput& input) : input_(input), eyes_map_(EyesOnMap(input.survey, input.projection)) {
     eyes_enu_.reserve(input.survey.photos.size());
     for (const survey::Photo& photo : input.survey.photos) eyes_enu_.push_back(photo.cam_from_enu.OriginInSource());
   }
@@ -62,10 +60,10 @@ class ViewFinder {
     return photos;
   }
 
-  // Best first, `most` at most. place_map: the same place on the map.
-  void Find(const Eigen::Vector3d& place_enu, const Eigen::Vector3d& place_map, std::span<const int32_t> photos, size_t most,
-            std::vector<NodeView>* views) const {
-    views->clear();
+  // Photos that see the place, best first, `most` at most. Where none does, those with it in their frame: cells around it may be seen. place_map: the
+  // same place on the map. Returns the number of photos with it in their frame, kMostSeen at most.
+  int Find(const Eigen::Vector3d& place_enu, const Eigen::Vector3d& place_map, std::span<const int32_t> photos, size_t most,
+           std::vector<NodeView>* views) const {
     std::vector<NodeView> ranked;
     for (const int32_t photo : photos) {
       const double cost = ViewCost(place_enu, eyes_enu_[static_cast<size_t>(photo)], input_.flown_height_m);
@@ -73,24 +71,43 @@ class ViewFinder {
     }
     std::sort(ranked.begin(), ranked.end(),
               [](const NodeView& a, const NodeView& b) { return a.cost < b.cost || (a.cost == b.cost && a.photo < b.photo); });
+    views->clear();
+    std::vector<NodeView> hidden;
+    const double slack_m = SlackAt(place_map);
+    int in_frame = 0;
     for (NodeView& view : ranked) {
-      if (views->size() == most) break;
+      if (views->size() == most && in_frame >= kMostSeen) break;
       const survey::Photo& photo = input_.survey.photos[static_cast<size_t>(view.photo)];
       const camera::Camera& camera = input_.survey.cameras[static_cast<size_t>(photo.camera)];
       const std::optional<Eigen::Vector2d> pixel = PixelIn(camera, photo.cam_from_enu, place_enu);
-      if (!pixel || !input_.surface.IsVisible(place_map, eyes_map_[static_cast<size_t>(view.photo)], slack_m_)) continue;
+      if (!pixel) continue;
+      in_frame = std::min(in_frame + 1, kMostSeen);
+      if (views->size() == most) continue;
       const double width = camera.width, height = camera.height;
       const double inside = std::min({pixel->x(), pixel->y(), width - pixel->x(), height - pixel->y()}) / (kRimShare * std::min(width, height));
       if (inside < 1.0) view.cost += kRimCost * (1.0 / std::max(inside, 1e-3) - 1.0);
       view.pixel = *pixel;
-      views->push_back(view);
+      const bool visible = input_.surface.IsVisible(place_map, eyes_map_[static_cast<size_t>(view.photo)], slack_m);
+      (visible ? *views : hidden).push_back(view);
     }
+    if (views->empty()) {
+      hidden.resize(std::min(hidden.size(), most));
+      *views = std::move(hidden);
+    }
+    return in_frame;
   }
 
  private:
   const PhotoMapInput& input_;
+  double SlackAt(const Eigen::Vector3d& place_map) const {
+    const gis::MapGrid& grid = input_.surface.grid();
+    const Eigen::Vector2d cell = grid.CellOf(place_map.head<2>());
+    const int column = std::clamp(static_cast<int>(std::lround(cell.x())), 0, grid.width - 1);
+    const int row = std::clamp(static_cast<int>(std::lround(cell.y())), 0, grid.height - 1);
+    return static_cast<double>(input_.slack_m[grid.Index(column, row)]);
+  }
+
   std::vector<Eigen::Vector3d> eyes_enu_, eyes_map_;
-  double slack_m_;
 };
 
 // Colour of a photo at a pixel of the full photo, as its small picture shows it; nothing where it is masked or cannot be read.
@@ -185,7 +202,8 @@ class TileOfNodes {
         row_(std::max(core_row_ - kOverlapNodes, 0)),
         columns_(std::min(core_column_ + kTileNodes + kOverlapNodes, nodes.columns) - column_),
         rows_(std::min(core_row_ + kTileNodes + kOverlapNodes, nodes.rows) - row_),
-        candidates_(static_cast<size_t>(columns_) * static_cast<size_t>(rows_)) {}
+        candidates_(static_cast<size_t>(columns_) * static_cast<size_t>(rows_)),
+        seen_(candidates_.size(), 0) {}
 
   void FindCandidates(const ViewFinder& finder, const PhotoLight& light, PhotoPictures& small) {
     const CellPlaces places(input_.grid, input_.projection, kNodeCells * column_, kNodeCells * row_, kNodeCells * columns_, kNodeCells * rows_);
@@ -200,7 +218,8 @@ class TileOfNodes {
         const Eigen::Vector2d position = input_.grid.CellCentre(cell.x(), cell.y());
         const double height_m = input_.surface.HeightAt(position);
         if (!std::isfinite(height_m)) continue;
-        finder.Find(places.At(cell.x(), cell.y(), height_m), {position.x(), position.y(), height_m}, around, kCandidates, &views);
+        const Eigen::Vector3d place_map(position.x(), position.y(), height_m);
+        seen_[Index(x, y)] = static_cast<uint8_t>(finder.Find(places.At(cell.x(), cell.y(), height_m), place_map, around, kCandidates, &views));
         std::vector<NodeCandidate>& candidates = candidates_[Index(x, y)];
         for (const NodeView& view : views) {
           const auto photo = static_cast<size_t>(view.photo);
@@ -239,7 +258,7 @@ class TileOfNodes {
       for (int x = core_column_ - column_; x < std::min(core_column_ - column_ + kTileNodes, columns_); ++x) {
         const std::vector<NodeCandidate>& candidates = candidates_[Index(x, y)];
         const size_t node = nodes->Index(column_ + x, row_ + y);
-        nodes->seen[node] = static_cast<uint8_t>(candidates.size());
+        nodes->seen[node] = seen_[Index(x, y)];
         const int8_t best = chosen[Index(x, y)];
         if (best < 0) continue;
         std::vector<std::pair<float, int32_t>> others;
@@ -298,6 +317,7 @@ class TileOfNodes {
   int core_column_, core_row_;
   int column_, row_, columns_, rows_;
   std::vector<std::vector<NodeCandidate>> candidates_;
+  std::vector<uint8_t> seen_;  // per node, as MapNodes::seen
 };
 
 MapNodes EmptyNodes(const gis::MapGrid& grid) {
@@ -367,10 +387,6 @@ std::vector<Eigen::Vector3d> EyesOnMap(const survey::Survey& survey, const gis::
   eyes.reserve(survey.photos.size());
   for (const survey::Photo& photo : survey.photos) eyes.push_back(projection.MapFromEnu(photo.cam_from_enu.OriginInSource()));
   return eyes;
-}
-
-double SightSlack_m(const HeightGrid& surface) {
-  return kSlackCells * surface.grid().resolution_m;
 }
 
 PhotoLight MeasureLight(const PhotoMapInput& input, PhotoPictures& small, base::ThreadPool& threads) {

@@ -23,6 +23,7 @@ struct PhotoMapInput {
   const gis::MapGrid& grid;      // of the map
   const gis::MapProjection& projection;
   const HeightGrid& surface;               // heights as of MapProjection
+  std::span<const float> slack_m;          // SightSlack_m of the surface
   std::span<const uint8_t> field_rgba;     // the field's colours on the surface's grid, display values; empty: not known
   double ground_z = 0.0;                   // ENU, of most of the ground
   double flown_height_m = 0.0;             // of most photos, above the ground
@@ -36,7 +37,7 @@ constexpr size_t kKeptChoices = 4;
 struct MapNodes {
   int columns = 0, rows = 0;
   std::vector<std::array<int32_t, kKeptChoices>> photos;  // the one that is to show the node, then others that see it, the best first; -1: none
-  std::vector<uint8_t> seen;                              // number of photos that see it, kMostSeen at most
+  std::vector<uint8_t> seen;                              // number of photos with it in their frame, hidden or not, kMostSeen at most
 
   size_t Index(int column, int row) const { return static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column); }
   gis::MapGrid GridOf(const gis::MapGrid& map) const;  // with the nodes as cells
@@ -57,8 +58,6 @@ class CellPlaces {
 
 // Cameras in map space (easting, northing, height), as HeightGrid::IsVisible wants them.
 std::vector<Eigen::Vector3d> EyesOnMap(const survey::Survey& survey, const gis::MapProjection& projection);
-// How far cells may rise above a line of sight and not hide what is behind, metres.
-double SightSlack_m(const HeightGrid& surface);
 
 // From the field's colours where they are known, otherwise from what photos show of the same places. small: pictures with about a pixel per node.
 PhotoLight MeasureLight(const PhotoMapInput& input, PhotoPictures& small, base::ThreadPool& threads);

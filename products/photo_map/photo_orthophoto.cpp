@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "core/base/cancel.h"
 #include "core/base/file.h"
@@ -18,6 +19,7 @@
 #include "products/map_area.h"
 #include "products/map_rays.h"
 #include "products/photo_map/map_edge.h"
+#include "products/photo_map/painted_rows.h"
 #include "products/photo_map/photo_map.h"
 #include "products/place_metadata.h"
 
@@ -27,6 +29,7 @@ namespace {
 constexpr size_t kNamedFailures = 3;
 constexpr int kFewestViews = 2;     // of the ground inside the cutline
 constexpr double kStepCells = 9.0;  // heights of neighbouring cells that differ by more are a step: a roof's edge
+constexpr int kHoleCells = 60;      // from a cell without a surface to those with one
 
 // Heights of ground and roof meet in the cells between them, where the field shows neither. Each such cell is given to the nearer of the two, so that
 // no wall is drawn as a slope.
@@ -52,6 +55,35 @@ std::vector<float> WithSharpSteps(const FieldMap& field, base::ThreadPool& threa
     }
   });
   return sharp;
+}
+
+// The field has no surface in some cells, as in deep shadow between trees, but photos show what is there. A hole has heights within kHoleCells in all
+// four directions, and gets their mean, the nearer the more.
+void FillHoles(const gis::MapGrid& grid, std::vector<float>* height_m, base::ThreadPool& threads) {
+  const std::vector<float> given = *height_m;
+  threads.ParallelFor(grid.height, [&](int64_t task, int /*thread*/) {
+    const int row = static_cast<int>(task);
+    for (int column = 0; column < grid.width; ++column) {
+      if (std::isfinite(given[grid.Index(column, row)])) continue;
+      double weights = 0.0, sum = 0.0;
+      bool enclosed = true;
+      for (const auto& [step_x, step_y] : {std::pair{-1, 0}, std::pair{1, 0}, std::pair{0, -1}, std::pair{0, 1}}) {
+        bool found = false;
+        for (int n = 1; n <= kHoleCells && !found; ++n) {
+          const int x = column + n * step_x, y = row + n * step_y;
+          if (x < 0 || y < 0 || x >= grid.width || y >= grid.height) break;
+          const auto height = static_cast<double>(given[grid.Index(x, y)]);
+          found = std::isfinite(height);
+          if (!found) continue;
+          sum += height / n;
+          weights += 1.0 / n;
+        }
+        enclosed = enclosed && found;
+        if (!enclosed) break;
+      }
+      if (enclosed) (*height_m)[grid.Index(column, row)] = static_cast<float>(sum / weights);
+    }
+  });
 }
 
 std::vector<double> GroundHeights(const scene::SceneInfo& info, const FieldMap& field) {
@@ -141,17 +173,21 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   if (boundary) made.grid = CropTo(made.grid, *boundary);
   const gis::MapGrid& grid = made.grid;
   const gis::MapProjection projection(info.origin, grid);
-  const HeightGrid surface(field.grid, WithSharpSteps(field, threads));
-  PhotoMap map({.survey = survey,
-                .usable = usable,
-                .grid = grid,
-                .projection = projection,
-                .surface = surface,
-                .field_rgba = field.rgba,
-                .ground_z = ground_z,
-                .flown_height_m = FlownHeight(survey, ground_z),
-                .picture_bytes = memory},
-               threads);
+  std::vector<float> heights = WithSharpSteps(field, threads);
+  FillHoles(field.grid, &heights, threads);
+  const HeightGrid surface(field.grid, std::move(heights));
+  const std::vector<float> slack_m = SightSlack_m(surface, threads);
+  const PhotoMapInput input{.survey = survey,
+                            .usable = usable,
+                            .grid = grid,
+                            .projection = projection,
+                            .surface = surface,
+                            .slack_m = slack_m,
+                            .field_rgba = field.rgba,
+                            .ground_z = ground_z,
+                            .flown_height_m = FlownHeight(survey, ground_z),
+                            .picture_bytes = memory};
+  PhotoMap map(input, threads);
   WarnOfFailures(map.failures(), n_usable);
   made.unreadable = static_cast<int>(map.failures().size());
   if (map.failures().size() == n_usable) {
@@ -167,6 +203,12 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
     return std::nullopt;
   }
 
+  std::optional<PaintedRows> painted;
+  if (grid.height > PhotoMap::kRows) painted.emplace(folder / "orthophoto.parts", PaintKey(input));
+  if (const int parts = painted ? painted->Count() : 0; parts > 0) {
+    base::LogInfo("goes on with the orthophoto that was interrupted: {} of {} parts are painted", parts,
+                  (grid.height + PhotoMap::kRows - 1) / PhotoMap::kRows);
+  }
   gis::GeoTiffWriter ortho(folder / "orthophoto.tif", OrthophotoSpec(info, grid, "Orthophoto"));
   gis::GeoTiffWriter sources(folder / "ortho_sources.tif", SourcesSpec(info, grid));
   base::Progress progress("orthophoto", static_cast<double>(grid.width) * grid.height, "cells");
@@ -174,7 +216,10 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   PhotoMapRows rows;
   for (int first_row = 0; first_row < grid.height; first_row += PhotoMap::kRows) {
     const int n_rows = std::min(PhotoMap::kRows, grid.height - first_row);
-    map.PaintRows(first_row, n_rows, threads, &rows);
+    if (!painted || !painted->Read(first_row, grid.Index(0, n_rows), &rows)) {
+      map.PaintRows(first_row, n_rows, threads, &rows);
+      if (painted) painted->Write(first_row, rows);
+    }
     gis::MapGrid part = grid;
     part.top -= first_row * grid.resolution_m;
     part.height = n_rows;
@@ -204,6 +249,7 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   made.field_cells = cells_of[kFromField];
   WriteSources(survey, made, cells_of, folder / "ortho_sources.json");
   WriteCutline(cutline.rings(), grid, folder / "cutline.gpkg");
+  if (painted) painted->Remove();
   return made;
 }
 

@@ -72,8 +72,9 @@ bool TilePainter::SeesCell(int32_t photo, Used& used, int surface_column, int su
   if (sight == kUnknown) {
     const float height_m = input_.surface.HeightOf(surface_column, surface_row);
     const Eigen::Vector2d position = input_.surface.grid().CellCentre(surface_column, surface_row);
+    const auto slack_m = static_cast<double>(input_.slack_m[input_.surface.grid().Index(surface_column, surface_row)]);
     const bool seen = !std::isfinite(height_m) || input_.surface.IsVisible({position.x(), position.y(), static_cast<double>(height_m)},
-                                                                           eyes_map_[static_cast<size_t>(photo)], SightSlack_m(input_.surface));
+                                                                           eyes_map_[static_cast<size_t>(photo)], slack_m);
     sight = seen ? kSeen : kHidden;
   }
   return sight == kSeen;

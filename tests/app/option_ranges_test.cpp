@@ -127,7 +127,8 @@ TEST(OptionRanges, AreTheSameInConfigurationFilesAndHelp) {
   for (const base::PatternMatch& word : base::FindAll(help, "\\S+")) on_one_line += word[0] + " ";
   help = on_one_line;
   // Flags that take durations and memory sizes, in units of their own.
-  const std::set<std::string> other_units = {"run.time_budget_s", "run.memory_gb", "context.checkpoint_every_s", "train.checkpoint_every_s"};
+  const std::set<std::string> other_units = {"run.time_budget_s", "run.within_s", "run.memory_gb", "context.checkpoint_every_s",
+                                             "train.checkpoint_every_s"};
   size_t in_help = 0;
   for (const Described& one : all) {
     const std::string range = one.option.range.Text();

@@ -12,6 +12,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/random.h"
+
 namespace skyquilt::products {
 namespace {
 
@@ -187,6 +189,27 @@ RC_GTEST_PROP(HeightGrid, HidesWhatAnyCellHides, ()) {
   const bool hidden = !heights.IsVisible(place, eye, slack_m);
   if (IsHiddenByAnyCell(heights, place, eye, slack_m, -1e-9)) RC_ASSERT(hidden);
   if (hidden) RC_ASSERT(IsHiddenByAnyCell(heights, place, eye, slack_m, 1e-9));
+}
+
+// A roof 8 m high on sloping ground, and a wood beside it whose heights are not sure.
+TEST(SightSlack, IsLargeInRoughCrownsAndSmallOnBothSidesOfARoofsEdge) {
+  const gis::MapGrid grid = GridOf(80, 60, 0.25);
+  base::Random random(4);
+  const HeightGrid heights = Heights(grid, [&](int column, int row) {
+    const double ground = 100.0 + 0.1 * column + 0.05 * row;
+    if (column >= 50) return ground + 6.0 + random.Uniform(-1.0, 1.0);
+    return column >= 15 && column < 35 && row >= 15 && row < 45 ? ground + 8.0 : ground;
+  });
+  base::ThreadPool threads(2);
+  const std::vector<float> slack_m = SightSlack_m(heights, threads);
+  ASSERT_EQ(slack_m.size(), grid.size());
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const float slack = slack_m[grid.Index(column, row)];
+      if (column < 40) EXPECT_NEAR(slack, 1.5 * grid.resolution_m, 0.01) << column << " " << row;
+      if (column >= 60) EXPECT_GT(slack, 0.6F) << column << " " << row;
+    }
+  }
 }
 
 }  // namespace

@@ -161,7 +161,9 @@ TEST_F(MapEdge, RingsNeverCross) {
       };
       int crossings = 0;
       for (size_t i = 0; i < sides.size(); ++i) {
+        const Eigen::Vector2d low = sides[i].first.cwiseMin(sides[i].second), high = sides[i].first.cwiseMax(sides[i].second);
         for (size_t j = i + 1; j < sides.size(); ++j) {
+          if (std::max(sides[j].first.y(), sides[j].second.y()) < low.y() || std::min(sides[j].first.y(), sides[j].second.y()) > high.y()) continue;
           const bool one = side(sides[i], sides[j].first) * side(sides[i], sides[j].second) < 0.0;
           const bool other = side(sides[j], sides[i].first) * side(sides[j], sides[i].second) < 0.0;
           crossings += one && other && sides[i].second != sides[j].first && sides[j].second != sides[i].first ? 1 : 0;

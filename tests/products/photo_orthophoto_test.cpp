@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/base/file.h"
 #include "core/base/json_text.h"
@@ -13,6 +14,8 @@
 #include "core/base/random.h"
 #include "core/gis/geotiff.h"
 #include "products/map_products.h"
+#include "products/map_rays.h"
+#include "products/photo_map/painted_rows.h"
 #include "products/photo_map/photo_light.h"
 #include "tests/products/patterned_survey.h"
 #include "tests/support/error_of.h"
@@ -88,7 +91,7 @@ class PhotoOrthophotoTest : public testing::Test {
   MapProducts Make(const survey::Survey& survey, const ProductOptions& options = {}, int n_threads = 2, size_t memory = size_t{1} << 30) {
     base::ThreadPool threads(n_threads);
     const MapPhotos photos{survey, memory, threads};
-    const MapProducts made = MakeMapProducts(Info(), Field, options, folder_ / "products", &photos);
+    const MapProducts made = MakeMapProducts(Info(), caster_, options, folder_ / "products", &photos);
     map_ = gis::ReadReduced(folder_ / "products/orthophoto.tif", 1 << 20).image;
     return made;
   }
@@ -113,6 +116,7 @@ class PhotoOrthophotoTest : public testing::Test {
   nlohmann::ordered_json Sources() const { return base::ParseJson(base::ReadFile(folder_ / "products/ortho_sources.json")); }
 
   TemporaryFolder folder_;
+  RayCaster caster_ = Field;
   image::ImageF map_;
 };
 
@@ -149,6 +153,52 @@ TEST_F(PhotoOrthophotoTest, SaysWhereEachCellComesFrom) {
   EXPECT_EQ(counts[1], json["field_cells"].get<int64_t>());
   EXPECT_EQ(made.painted->cells, json["cells"].get<int64_t>());
   EXPECT_TRUE(std::filesystem::exists(folder_ / "products/cutline.gpkg"));
+}
+
+// The photos are laid on a finer surface, but maps of heights share their cells, and at most have those of the surface.
+TEST_F(PhotoOrthophotoTest, TheSurfaceModelHasTheCellsOfTheOtherHeightsAndNoHeightBetweenRoofAndGround) {
+  const survey::Survey survey = Ground::Write(folder_.path(), 0.5, false);
+  for (const auto& [stated_m, expected_m] : {std::pair{0.0, 0.5}, std::pair{0.1, 0.25}, std::pair{0.7, 0.7}}) {
+    ProductOptions options;
+    options.resolution_m = stated_m;
+    const MapProducts made = Make(survey, options);
+    ASSERT_TRUE(made.painted);
+    const gis::MapGrid planned = PlanHeightGrid(Info(), options);
+    const gis::ReducedRaster dsm = gis::ReadReduced(folder_ / "products/dsm.tif", 1 << 20);
+    EXPECT_EQ(planned.resolution_m, expected_m);
+    ASSERT_EQ(dsm.image.width, planned.width) << stated_m;
+    ASSERT_EQ(dsm.image.height, planned.height);
+    int64_t without = 0;
+    for (int y = 0; y < planned.height; ++y) {
+      for (int x = 0; x < planned.width; ++x) {
+        const double height_m = static_cast<double>(*dsm.image.At(x, y));
+        const Eigen::Vector2d place = planned.CellCentre(x, y);
+        if (!std::isfinite(height_m)) {
+          ++without;
+          continue;
+        }
+        const bool roof = std::abs(height_m - Ground::kRoof_m) < 1e-3;
+        EXPECT_TRUE(roof || std::abs(height_m - Ground::kGround_m) < 1e-3) << height_m;
+        const bool edge =
+            Ground::InHouse(place.x(), place.y(), planned.resolution_m) && !Ground::InHouse(place.x(), place.y(), -planned.resolution_m);
+        EXPECT_TRUE(edge || roof == Ground::InHouse(place.x(), place.y())) << place.transpose();
+      }
+    }
+    EXPECT_LT(static_cast<double>(without), 0.3 * static_cast<double>(planned.size())) << stated_m;
+  }
+}
+
+TEST_F(PhotoOrthophotoTest, HolesOfTheSceneHaveWhatThePhotosShow) {
+  const survey::Survey survey = Ground::Write(folder_.path(), 0.5, false);
+  caster_ = [](std::span<const render::Ray> rays, std::span<render::RayColor> out) {
+    Field(rays, out);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      if ((rays[i].origin_enu.head<2>() - Eigen::Vector2d(-9.0, 6.0)).norm() < 2.0) out[i].opacity = 0.0F;
+    }
+  };
+  const MapProducts made = Make(survey);
+  ASSERT_TRUE(made.painted);
+  EXPECT_LT(base::Quantile(Errors(made.grid), 0.999), 10.0);
 }
 
 TEST_F(PhotoOrthophotoTest, DoesNotShowWhatMoved) {
@@ -224,6 +274,66 @@ TEST_F(PhotoOrthophotoTest, ThreadsAndMemoryDoNotMatter) {
   for (const std::string& name : names) first[name] = base::ReadFile(folder_ / "products" / name);
   Make(survey, {}, 3, 1);
   for (const std::string& name : names) EXPECT_EQ(base::ReadFile(folder_ / "products" / name), first[name]) << name;
+}
+
+// A folder in the place of the last file stops the work when everything is painted.
+TEST_F(PhotoOrthophotoTest, PartsThatArePaintedAreNotPaintedAgain) {
+  const survey::Survey survey = Ground::Write(folder_.path(), 0.0, false);
+  ProductOptions options;
+  options.resolution_m = 0.042;
+  const std::filesystem::path parts = folder_ / "products/orthophoto.parts";
+  const std::filesystem::path in_the_way = folder_ / "products/cutline.gpkg";
+  std::filesystem::create_directories(in_the_way / "full");
+  EXPECT_THROW(Make(survey, options), std::exception);
+  ASSERT_TRUE(std::filesystem::exists(parts / "rows_0.bin"));
+  ASSERT_TRUE(std::filesystem::exists(parts / "rows_1024.bin"));
+  std::filesystem::remove_all(in_the_way);
+  // The second part is damaged, and the first is painted over, in a place that has nothing to do with the photos' colours.
+  base::WriteFileAtomically(parts / "rows_1024.bin", base::ReadFile(parts / "rows_1024.bin").substr(0, 1000));
+  const PaintedRows painted(parts, base::ReadFile(parts / "key.txt").substr(0, 16));
+  PhotoMapRows rows;
+  const gis::MapGrid planned = PlanMapGrid(Info(), options);
+  ASSERT_TRUE(painted.Read(0, planned.Index(0, PhotoMap::kRows), &rows));
+  const size_t marked = planned.Index(planned.width / 2, PhotoMap::kRows / 2);
+  rows.rgba[4 * marked] = 3;
+  rows.rgba[4 * marked + 1] = rows.rgba[4 * marked + 2] = 251;
+  painted.Write(0, rows);
+  testing::internal::CaptureStdout();
+  const MapProducts made = Make(survey, options);
+  const std::string log = testing::internal::GetCapturedStdout();
+  EXPECT_NE(log.find("2 of 2 parts"), std::string::npos) << log;
+  EXPECT_EQ(map_.At(planned.width / 2, PhotoMap::kRows / 2)[0], 3.0F);
+  EXPECT_LT(base::Quantile(Errors(made.grid), 0.999), 12.0);
+  EXPECT_FALSE(std::filesystem::exists(parts));
+}
+
+TEST_F(PhotoOrthophotoTest, PartsOfOtherPhotosArePaintedAgain) {
+  survey::Survey survey = Ground::Write(folder_.path(), 0.0, false);
+  const auto key = [&] {
+    const gis::MapGrid grid = PlanMapGrid(Info(), {});
+    const gis::MapProjection projection(Info().origin, grid);
+    const HeightGrid surface(grid, std::vector<float>(grid.size(), 1.0F));
+    const std::vector<char> usable(survey.photos.size(), 1);
+    return PaintKey(
+        {.survey = survey, .usable = usable, .grid = grid, .projection = projection, .surface = surface, .slack_m = {}, .field_rgba = {}});
+  };
+  const std::string first = key();
+  EXPECT_EQ(key(), first);
+  std::set<std::string> keys = {first};
+  image::SavePng(image::Image8(20, 20, 3, 7), folder_ / survey.photos[3].name);
+  keys.insert(key());
+  survey.photos[2].cam_from_enu.translation.x() += 1e-9;
+  keys.insert(key());
+  survey.cameras[0].params[0] += 1e-9;
+  keys.insert(key());
+  EXPECT_EQ(keys.size(), 4U);
+  const PaintedRows before(folder_ / "parts", first);
+  before.Write(0, {std::vector<uint8_t>(8, 1), std::vector<uint16_t>(2, 1)});
+  EXPECT_EQ(PaintedRows(folder_ / "parts", first).Count(), 1);
+  PhotoMapRows rows;
+  EXPECT_FALSE(before.Read(0, 3, &rows));
+  EXPECT_TRUE(before.Read(0, 2, &rows));
+  EXPECT_EQ(PaintedRows(folder_ / "parts", *keys.rbegin() == first ? *keys.begin() : *keys.rbegin()).Count(), 0);
 }
 
 TEST_F(PhotoOrthophotoTest, TheBorderIsCutWhereTwoPhotosSeeTheGroundAndMoreOnRequest) {

@@ -1,0 +1,119 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/command.h"
+#include "app/settings/duration.h"
+#include "coordinator/planning/measure_rates.h"
+#include "coordinator/planning/needs.h"
+#include "coordinator/planning/plan_text.h"
+#include "coordinator/stages/timed_run.h"
+#include "core/base/amounts.h"
+#include "core/base/errors.h"
+#include "core/base/json_text.h"
+#include "core/base/system.h"
+#include "core/base/thread_pool.h"
+
+namespace skyquilt::app {
+namespace {
+
+struct PlanFlags {
+  std::string photos, model;
+  std::string out = ".";
+  std::vector<std::string> within;
+  int ranks = 1, machines = 1;
+  bool json = false;
+};
+
+// The totals that were asked for, or usual ones.
+std::vector<double> TotalsOf(const PlanFlags& flags, const coordinator::Settings& settings, const coordinator::Predictor& predictor) {
+  std::vector<double> totals;
+  for (const std::string& text : flags.within) totals.push_back(ParseDurationSeconds(text));
+  if (!totals.empty()) return totals;
+  if (settings.run.within_s > 0.0) return {settings.run.within_s};
+  return coordinator::UsualTotals([&](double within_s) { return coordinator::PlanOfNewRun(predictor, settings, within_s); });
+}
+
+void PrintPlans(const PlanFlags& flags, const coordinator::WorkSize& size, const std::vector<coordinator::Plan>& plans,
+                const coordinator::Needs& needs, const coordinator::Room& room, const coordinator::Rates& rates) {
+  if (flags.json) {
+    nlohmann::ordered_json json = {{"photos", size.photos},
+                                   {"held_out", size.held_out},
+                                   {"photo_pixels", size.photo_pixels},
+                                   {"ranks", size.ranks},
+                                   {"rates",
+                                    {{"decoded_pixels", rates.decoded_pixels},
+                                     {"feature_pixels", rates.feature_pixels},
+                                     {"matched_pairs", rates.matched_pairs},
+                                     {"samples", rates.samples},
+                                     {"rays", rates.rays}}},
+                                   {"needs", coordinator::NeedsJson(needs, room)},
+                                   {"plans", nlohmann::ordered_json::array()}};
+    for (const coordinator::Plan& plan : plans) json["plans"].push_back(coordinator::PlanJson(plan));
+    std::cout << base::JsonText(json, 2) << "\n";
+    return;
+  }
+  std::cout << fmt::format("{} photos of {}pixels, {} held out; {} rank(s) on {} machine(s) such as {}\n", size.photos,
+                           base::FormatCount(size.photo_pixels), size.held_out, size.ranks, size.machines, base::MachineDescription())
+            << fmt::format("measured: {} training samples/s, {}pixels/s searched for features, {:.0f} pairs/s; guessed: {} rays/s\n",
+                           base::FormatCount(rates.samples), base::FormatCount(rates.feature_pixels), rates.matched_pairs,
+                           base::FormatCount(rates.rays))
+            << coordinator::NeedsText(needs, room) << "\n";
+  for (const coordinator::Plan& plan : plans) std::cout << "\n" << coordinator::PlanText(plan) << "\n";
+}
+
+void ShowPlans(const CommandState& state, const PlanFlags& flags, const std::vector<config::Override>& overrides) {
+  const coordinator::Settings settings = state.Load({}, overrides);
+  if (!std::filesystem::is_directory(flags.photos)) {
+    throw base::InputError(flags.photos, "no such folder", "Give the folder that holds the photos");
+  }
+  if (flags.machines > flags.ranks) throw base::UsageError("--machines is more than --ranks: every machine needs a rank");
+  base::ThreadPool threads(settings.run.threads);
+  coordinator::WorkSize size = coordinator::CountPhotos(flags.photos, flags.model, settings, {}, threads);
+  size.ranks = flags.ranks;
+  size.machines = flags.machines;
+  const std::string trial = "skyquilt_plan_" + fmt::format("{:016x}", std::hash<std::string>{}(base::UtcTimestamp() + flags.photos));
+  const coordinator::Rates rates = coordinator::MeasureRates(
+      size, settings, {.photos = flags.photos, .model = flags.model, .work_folder = std::filesystem::temp_directory_path() / trial}, threads);
+  const coordinator::Predictor predictor(size, rates);
+  const coordinator::Needs needs = coordinator::NeedsOf(size, settings);
+  const coordinator::Room room = coordinator::RoomFor(flags.out, settings);
+  std::vector<coordinator::Plan> plans;
+  for (const double within_s : TotalsOf(flags, settings, predictor)) plans.push_back(coordinator::PlanOfNewRun(predictor, settings, within_s));
+  PrintPlans(flags, size, plans, needs, room, rates);
+  // Told last, so that the reason is seen beside the numbers.
+  coordinator::RequireRoom(needs, room, flags.out);
+}
+
+}  // namespace
+
+void AddPlan(CLI::App& app, CommandState& state) {
+  const auto flags = std::make_shared<PlanFlags>();
+  const auto overrides = std::make_shared<std::vector<config::Override>>();
+  CLI::App* command = app.add_subcommand("plan", "say in seconds what a run of photos would take: time of each stage, memory, disk");
+  command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");
+  command->add_option("-o,--out", flags->out, "project folder that the run would have, for its free disk; default: this folder")->type_name("FOLDER");
+  command->add_option("--within", flags->within, "total times to plan for, such as 5min,20min,1h; default: three that suit the photos")
+      ->delimiter(',')
+      ->type_name("TIME,...");
+  command->add_option("--ranks", flags->ranks, "plan for so many ranks under mpirun; default: 1")->check(CLI::Range(1, 100000))->type_name("N");
+  command->add_option("--machines", flags->machines, "that the ranks are on, each as fast as this one; default: 1")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N");
+  AddModelFlag(*command, flags->model);
+  AddOptionFlag(*command, overrides, "--image-width", "run.image_width",
+                "scale photos down to this width in pixels for training and scoring; 0: full size");
+  AddMemoryFlag(*command, overrides);
+  command->add_flag("--json", flags->json, "print JSON");
+  command->footer(
+      "Examples:\n"
+      "  skyquilt plan photos/\n"
+      "  skyquilt plan photos/ --within 10min,1h --config quality\n"
+      "  skyquilt plan photos/ --ranks 9 --machines 4\n"
+      "Nothing is written. Exit status 2 or 3 when memory or disk cannot be enough.");
+  command->callback([&state, flags, overrides] { state.run_command = [&state, flags, overrides] { ShowPlans(state, *flags, *overrides); }; });
+}
+
+}  // namespace skyquilt::app

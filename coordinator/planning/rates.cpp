@@ -1,0 +1,35 @@
+#include "coordinator/planning/rates.h"
+
+#include <algorithm>
+
+namespace skyquilt::coordinator {
+namespace {
+
+// Brighton Beach renders 0.2 million rays a second where Seneca and the town train 2.1 to 2.5 million samples (docs/benchmarks.md); surfaces of the
+// town are seen at 0.5.
+constexpr double kRaysPerSample = 0.12;
+// Gradients go into one level's table per thread, of 8 by default.
+constexpr int kMostTrainingThreads = 8;
+
+}  // namespace
+
+Rates Rates::Usual(int threads) {
+  const double n = std::max(1, threads);
+  Rates rates;
+  rates.decoded_pixels = 35e6 * n;
+  // Brighton Beach: 18 photos, 1600 pixels wide for the search, in 9.6 s; Seneca: 167 in 152 s, nearly all searched twice. Two threads.
+  rates.feature_pixels = 1.2e6 * n;
+  rates.matched_pairs = 20.0 * n;
+  rates.scored_pixels = 0.15e6 * n;
+  rates.painted_cells = 0.5e6 * n;
+  rates.TakeSamples(1.0e6 * std::min(threads, kMostTrainingThreads));
+  if (threads > kMostTrainingThreads) rates.rays *= n / kMostTrainingThreads;
+  return rates;
+}
+
+void Rates::TakeSamples(double samples_per_second) {
+  samples = samples_per_second;
+  rays = kRaysPerSample * samples_per_second;
+}
+
+}  // namespace skyquilt::coordinator

@@ -16,7 +16,6 @@
 #include "surface/fuse_mesh.h"
 #include "surface/maps/surface_maps.h"
 #include "surface/mesh/simplify.h"
-#include "surface/odm_names.h"
 #include "surface/surface_table.h"
 #include "surface/views/render_depth_views.h"
 
@@ -128,7 +127,6 @@ class SurfaceBuilder {
     }
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     WriteSurfaceTable(result_, edges_, frame_, input_.out_folder / "surface.json");
-    if (input_.options.odm_names) ProvideOdmNames(input_.out_folder, input_.maps_folder);
     // Only the textures are needed again, by scores.
     std::error_code ignored;
     for (const char* done : {"views", "views.bin", "pieces"}) fs::remove_all(input_.work_folder / done, ignored);

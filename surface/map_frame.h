@@ -25,6 +25,8 @@ class MapFrame {
   // Easting, northing, height in metres.
   Eigen::Vector3d MapFromEnu(const Eigen::Vector3d& x_in_enu) const;
   Eigen::Vector3d EnuFromMap(const Eigen::Vector3d& x_in_map) const;
+  // The turn of directions in ENU near the middle of the scene, by the convergence of the meridians.
+  const Eigen::Matrix3d& map_from_enu() const { return map_from_enu_; }
   // A direction in ENU near this place, turned by the convergence of the meridians; length 1.
   Eigen::Vector3f MapDirection(const Eigen::Vector3f& direction_enu) const;
   // Subtracted from coordinates in files of single precision: whole multiples of 100 m near the middle of the scene in easting and northing, 0 in

@@ -35,7 +35,6 @@ struct SurfaceInput {
   double mesh_bytes = 0.0;                            // of them for the mesh of the whole survey; 0: half
   std::string work_key;                               // identity of scene and options: results of another key are not used
   std::filesystem::path work_folder;                  // results of finished steps, for going on after an interruption
-  std::filesystem::path maps_folder;                  // of orthophoto.tif and dsm.tif, for SurfaceOptions::odm_names
   std::filesystem::path out_folder;
 };
 

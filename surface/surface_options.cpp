@@ -34,12 +34,14 @@ std::vector<config::Field<SurfaceOptions>> SurfaceOptions::Fields() {
       {"terrain_low_m", &O::terrain_low_m, Range{0.01, 10}, "terrain: what rises less than this above the ground belongs to it, metres"},
       {"terrain_high_m", &O::terrain_high_m, Range{0.1, 100}, "terrain: what rises more than this above the ground never belongs to it, metres"},
       {"contour_interval_m", &O::contour_interval_m, Range{0, 1e4}, "height between contours, metres; 0: chosen from the relief"},
-      {"odm_names", &O::odm_names, Range(), "also provide the products under the names that OpenDroneMap uses, in surface/odm"},
   };
 }
 
 std::vector<config::FixedOption> SurfaceOptions::Fixed() {
-  return {{"max_angle_deg", kMaxAngle_deg}, {"max_hole_m2", kMaxHole_m2}, {"simplify_voxels", kSimplifyVoxels}};
+  return {{"max_angle_deg", kMaxAngle_deg},
+          {"max_hole_m2", kMaxHole_m2},
+          {"odm_names", false},  // 'skyquilt odm' provides OpenDroneMap's names
+          {"simplify_voxels", kSimplifyVoxels}};
 }
 
 void SurfaceOptions::Check() const {

@@ -35,7 +35,6 @@ struct SurfaceOptions {
   double terrain_low_m = 0.3;       // what rises less than this above the ground belongs to it
   double terrain_high_m = 3.0;      // what rises more than this never does
   double contour_interval_m = 0.0;  // 0: chosen from the relief
-  bool odm_names = false;           // also under the names that OpenDroneMap uses
 
   static std::vector<config::Field<SurfaceOptions>> Fields();
   static std::vector<config::FixedOption> Fixed();

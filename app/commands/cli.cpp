@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/commands/command.h"
@@ -96,10 +97,21 @@ void AddCommands(CLI::App& app, CommandState& state) {
   AddSurface(app, state);
   AddBuildings(app, state);
   AddTour(app, state);
+  AddOdm(app, state);
   AddEvaluate(app, state);
   AddView(app, state);
   AddInfo(app, state);
   AddBench(app, state);
+}
+
+// How many words the parser sees: all, but of 'skyquilt odm' only those up to "odm", because the others are OpenDroneMap's.
+int ParsedWords(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "odm") return i + 1;
+    if (!word.starts_with("--")) break;
+  }
+  return argc;
 }
 
 }  // namespace
@@ -153,10 +165,12 @@ int RunCommandLine(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) state.command_line += std::string(" ") + argv[i];
   CLI::App app{"Skyquilt turns a survey of drone photos into a geo-referenced radiance field, block by block, on CPUs.", "skyquilt"};
   AddCommands(app, state);
+  const int n_parsed = ParsedWords(argc, argv);
+  state.rest.assign(argv + n_parsed, argv + argc);
   int parse_status = kDone;
   const int status = Guarded([&] {
     try {
-      app.parse(argc, argv);
+      app.parse(n_parsed, argv);
     } catch (const CLI::Success& done) {
       app.exit(done);
       state.run_command = [] {};
@@ -175,7 +189,8 @@ int RunCommandLine(int argc, char** argv) {
     base::SetLogLevel(base::LogLevel::kWarning);
     base::Progress::SetQuiet(true);
   }
-  return Guarded(state.run_command);
+  const int ended = Guarded(state.run_command);
+  return state.status_for_caller ? state.status_for_caller(ended) : ended;
 }
 
 }  // namespace skyquilt::app

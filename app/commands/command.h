@@ -29,6 +29,9 @@ struct CommandState {
   bool quiet = false;
   bool verbose = false;
   std::function<void()> run_command;  // runs the command that was given; set while parsing
+  std::vector<std::string> rest;      // of 'skyquilt odm': all words behind it
+  // The exit status for whoever started the command; empty: as it is.
+  std::function<int(int status)> status_for_caller;
 
   // Settings from, in this order: defaults, `files`, --config, --set, the command's own flags. Later ones win.
   coordinator::Settings Load(const std::vector<std::filesystem::path>& files, const std::vector<config::Override>& flags) const;
@@ -80,6 +83,7 @@ void AddRender(CLI::App& app, CommandState& state);
 void AddSurface(CLI::App& app, CommandState& state);
 void AddBuildings(CLI::App& app, CommandState& state);
 void AddTour(CLI::App& app, CommandState& state);
+void AddOdm(CLI::App& app, CommandState& state);
 void AddEvaluate(CLI::App& app, CommandState& state);
 void AddView(CLI::App& app, CommandState& state);
 void AddInfo(CLI::App& app, CommandState& state);

@@ -24,7 +24,7 @@ void AddSurface(CLI::App& app, CommandState& state) {
       "Examples:\n"
       "  skyquilt surface out\n"
       "  skyquilt surface out --boundary site.geojson --restart\n"
-      "  skyquilt surface out --restart --set surface.texel_gsd=0.5 --set surface.odm_names=true\n"
+      "  skyquilt surface out --restart --set surface.texel_gsd=0.5\n"
       "Writes out/surface: mesh.glb, mesh.obj, mesh.ply, cloud.las, cloud.ply, tiles/tileset.json, dtm.tif, height_above_ground.tif, hillshade.tif "
       "and contours.gpkg.\n"
       "surface.json lists them; georeference.json says how to place them.");

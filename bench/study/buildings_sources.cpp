@@ -94,7 +94,6 @@ surface::SurfaceInput SurfaceInputOf(OpenProject& open, const TrueRays& rays) {
   input.work_key = config::Hash(open.settings.Flat());
   input.work_folder = open.project.SurfaceWorkFolder();
   input.out_folder = open.project.SurfaceFolder();
-  input.maps_folder = open.project.ProductsFolder();
   return input;
 }
 

@@ -14,7 +14,6 @@
 #include "core/survey/survey.h"
 #include "products/ray_caster.h"
 #include "surface/files/las_classes.h"
-#include "surface/odm_names.h"
 #include "surface/surface_table.h"
 
 namespace skyquilt::coordinator {
@@ -53,8 +52,6 @@ void ClassifyCloud(const Pipeline& pipeline, const surface::MapFrame& frame, con
     codes[i] = buildings::LasCode(classes[i]);
   }
   surface::RewriteLasClasses(pipeline.project.SurfaceFolder(), frame, positions, codes);
-  // The cloud's other name must lead to the new file.
-  if (pipeline.settings.surface.odm_names) surface::ProvideOdmNames(pipeline.project.SurfaceFolder(), pipeline.project.ProductsFolder());
 }
 
 void LogBuildings(const BuildingSet& set, bool georeferenced, const std::filesystem::path& folder) {

@@ -36,7 +36,6 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.work_key = stamp.Hash();
   input.work_folder = project.SurfaceWorkFolder();
   input.out_folder = project.SurfaceFolder();
-  input.maps_folder = project.ProductsFolder();
   std::optional<image::PixelCache> photos;
   if (settings.surface.photo_detail > 0.0) {
     std::filesystem::create_directories(project.PixelCacheFile().parent_path());

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <mutex>
+#include <utility>
 
 #include "core/base/amounts.h"
 
@@ -22,6 +23,10 @@ constexpr double kFileInterval_s = 8.0;  // a log is never silent for ten second
 constexpr int kBarWidth = 24;
 
 std::atomic<bool> quiet_everywhere{false};
+
+std::atomic<bool> has_listener{false};
+std::mutex listener_mutex;
+std::function<void(const std::string& label, double share)> progress_listener;
 
 // All progress lines share standard error: guards line_drawn, which is true while a terminal's current line shows one.
 std::mutex terminal_mutex;
@@ -54,6 +59,16 @@ struct Progress::State {
   Clock::time_point last_draw = start;
   bool is_terminal = isatty(STDERR_FILENO) != 0;
   bool finished = false;
+  Clock::time_point last_told = start;
+
+  void Tell() {
+    if (!has_listener.load() || total <= 0.0) return;
+    const Clock::time_point now = Clock::now();
+    if (!finished && std::chrono::duration<double>(now - last_told).count() < kTerminalInterval_s) return;
+    last_told = now;
+    const std::lock_guard lock(listener_mutex);
+    if (progress_listener) progress_listener(label, finished ? 1.0 : std::clamp(done / total, 0.0, 1.0));
+  }
 
   std::string Line(double elapsed_s) const {
     const double rate = elapsed_s > 0.0 ? std::max(0.0, done - done_before) / elapsed_s : 0.0;
@@ -115,6 +130,7 @@ void Progress::Update(double done, const std::string& detail) {
   state_->done = done;
   if (!detail.empty()) state_->detail = detail;
   state_->Draw(false);
+  state_->Tell();
 }
 
 void Progress::Advance(double by, const std::string& detail) {
@@ -123,6 +139,7 @@ void Progress::Advance(double by, const std::string& detail) {
   state_->done += by;
   if (!detail.empty()) state_->detail = detail;
   state_->Draw(false);
+  state_->Tell();
 }
 
 void Progress::Finish(const std::string& detail) {
@@ -131,10 +148,17 @@ void Progress::Finish(const std::string& detail) {
   state_->finished = true;
   if (!detail.empty()) state_->detail = detail;
   state_->Draw(true);
+  state_->Tell();
 }
 
 void Progress::SetQuiet(bool quiet) {
   quiet_everywhere.store(quiet);
+}
+
+void Progress::SetListener(std::function<void(const std::string& label, double share)> listener) {
+  const std::lock_guard lock(listener_mutex);
+  has_listener.store(static_cast<bool>(listener));
+  progress_listener = std::move(listener);
 }
 
 void ClearProgressLine() {

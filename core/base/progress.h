@@ -2,6 +2,7 @@
 // On a terminal the line is redrawn in place; in a file a new line is written about every 8 s. Nothing is shown when quiet. Thread-safe.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -23,6 +24,9 @@ class Progress {
   void Finish(const std::string& detail = "");
 
   static void SetQuiet(bool quiet);
+  // Called with the label and the share that is done (0 to 1) of every progress whose total is known, also when quiet: at its end, and between at
+  // most some times a second. On the thread that reports the progress, one call at a time; it must not report progress itself. Empty: nobody listens.
+  static void SetListener(std::function<void(const std::string& label, double share)> listener);
 
  private:
   struct State;

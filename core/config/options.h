@@ -41,7 +41,7 @@ struct Field {
 // still contain it, so that results of earlier versions are taken.
 struct FixedOption {
   std::string key;
-  std::variant<int, double> value;
+  std::variant<int, double, bool> value;
 };
 
 using Value = std::variant<bool*, int*, double*, std::string*, std::vector<double>*>;  // points to the option's member

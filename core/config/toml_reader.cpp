@@ -147,8 +147,10 @@ Known Describe(const Sections& sections) {
 
 // Takes the value of an option that is a constant now. Another value than the constant's would be silently lost: it is refused.
 void TakeFixed(const std::string& origin, const FixedOption& fixed, const toml::node& node) {
+  const bool* flag = std::get_if<bool>(&fixed.value);
   const double constant = std::visit([](auto value) { return static_cast<double>(value); }, fixed.value);
-  if (!node.is_number() || node.value<double>() != constant) {
+  const bool agrees = flag != nullptr ? node.is_boolean() && node.value<bool>() == *flag : node.is_number() && node.value<double>() == constant;
+  if (!agrees) {
     throw base::UsageError(From(origin) + fixed.key + " is fixed at " + TomlText(fixed) + " now and takes no other value; remove it" + LineOf(node));
   }
   base::LogWarning("{}: option '{}' is fixed at {} now; remove it", origin.empty() ? "--set" : origin, fixed.key, TomlText(fixed));

@@ -57,7 +57,7 @@ TEST(Settings, OptionsThatAreConstantsNowAreAcceptedWithTheirValues) {
                             "[partition]\nmargin_fraction = 0.06\nmin_margin_m = 2.0\nz_margin_below_m = 1.5\nz_margin_above_m = 1.5\n"
                             "parameter_budget = 0.0\n[context]\npyramid_until = 1.0\nnetwork_l2 = 1e-06\n[train]\npyramid_until = 1.0\n"
                             "network_l2 = 1e-06\n[products]\npreview_width = 1600\n[surface]\nmax_angle_deg = 85.0\nmax_hole_m2 = 30.0\n"
-                            "simplify_voxels = 0.5\n[buildings]\nmin_part_m2 = 15.0\nshare_yaw_m = 60.0\n");
+                            "simplify_voxels = 0.5\nodm_names = false\n[buildings]\nmin_part_m2 = 15.0\nshare_yaw_m = 60.0\n");
   EXPECT_EQ(LoadSettings({folder / "old.toml"}, {}).Flat(), defaults.Flat());
   EXPECT_EQ(defaults.Flat().at("partition.margin_fraction"), "0.06") << "stamps and hashes of earlier versions must stay valid";
   EXPECT_EQ(defaults.Flat().at("context.network_l2"), "1e-06");

@@ -81,15 +81,13 @@ class BuildingFaults:
             path.write_bytes(whole)
         self.skyquilt.call("buildings", project)
         expect(made(project) == self.wanted, "after faults of the surface other buildings are found")
-        # Another surface: buildings are made again, and the cloud's other name has the classes too.
+        # Another surface: buildings are made again.
         self.skyquilt.call("surface", project, "--restart", "--set", "surface.cloud=false", "--set", "surface.maps=false", "--set", "surface.glb=false")
         expect(not (project / "buildings").exists(), "buildings outlive their surface")
         self.refused(project, status=3, says=[again])
-        self.skyquilt.call("surface", project, "--restart", "--set", "surface.cloud=true", "--set", "surface.maps=true", "--set", "surface.odm_names=true")
+        self.skyquilt.call("surface", project, "--restart", "--set", "surface.cloud=true", "--set", "surface.maps=true")
         self.skyquilt.call("buildings", project)
         expect(made(project) == self.wanted, "the same surface has other buildings")
-        odm = project / "surface" / "odm" / "odm_georeferencing" / "odm_georeferenced_model.las"
-        expect(sha(odm) == self.wanted["surface/cloud.las"], "odm_georeferenced_model.las has other classes than cloud.las")
 
     def check_kills(self):
         """At a random moment, while the cloud is written again, after the first file, while the GeoPackage is written, and after the last file."""

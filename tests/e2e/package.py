@@ -69,6 +69,11 @@ def test(_, folder):
     expect("max_log2_table_size" in defaults, defaults)
     output(program, "simulate", "hamlet", "-o", "survey", "--set", "simulate.image_width=96", cwd=away, environment=ENVIRONMENT)
     output(program, "info", "survey", cwd=away, environment=ENVIRONMENT)
+    engine = root / "usr/share/skyquilt/odm"
+    expect((engine / "VERSION").read_text().strip() == version and (engine / "ENGINE").read_text().strip() == "skyquilt", "VERSION and ENGINE")
+    expect(output(engine / "run.sh", "--version", cwd=engine, environment=ENVIRONMENT).split() == ["skyquilt", version], "run.sh starts another program")
+    expect("--orthophoto-resolution" in output("python3", "-B", "-c", "import config; config.config(['-h'])", cwd=engine / "opendm",
+                                               environment=ENVIRONMENT), "config.py lists no options")
     help_text = subprocess.run([root / "usr/bin/skyquilt-mpirun", "--help"], env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
     expect("skyquilt-mpirun [--restarts N]" in help_text.stderr, help_text.stderr)
 

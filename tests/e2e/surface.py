@@ -243,7 +243,7 @@ def outside_by(corners, point):
 def check_boundary(skyquilt, project, folder, dsm):
     inside, away = outlines(dsm)
     site = write_outline(folder / "site.geojson", inside)
-    skyquilt.call("surface", project, "--boundary", site, "--restart", "--set", "surface.odm_names=true")
+    skyquilt.call("surface", project, "--boundary", site, "--restart")
     made = Surface(project / "surface")
     made.check_counts()
     skyquilt.call("render", project, "--ortho", "--dsm", "--boundary", site, "-o", folder / "site_maps")
@@ -261,7 +261,6 @@ def check_boundary(skyquilt, project, folder, dsm):
     for name, points in (("mesh.glb", made.glb), ("cloud.las", made.las.points), ("mesh.ply", map(made.in_map, made.ply.positions()))):
         worst = max(outside_by(inside, point) for point in points)
         expect(worst <= reach, f"{name} reaches {worst:.2f} m out of the boundary, more than two voxels")
-    check_odm_names(project)
 
     (folder / "broken.geojson").write_text('{"type": "FeatureCollection", "features": [')
     write_outline(folder / "away.geojson", away)
@@ -271,18 +270,6 @@ def check_boundary(skyquilt, project, folder, dsm):
         expect(done.returncode in (2, 3) and what in done.stdout, f"a boundary in {file.name} ends with {done.returncode}:\n{done.stdout}")
         left = [path.name for path in (project / "surface").rglob("*") if path.is_file()]
         expect(not left, f"after the refused boundary {file.name} there are {left}")
-
-
-def check_odm_names(project):
-    odm, own = project / "surface" / "odm", project / "surface"
-    same = {"odm_orthophoto/odm_orthophoto.tif": project / "products" / "orthophoto.tif", "odm_dem/dsm.tif": project / "products" / "dsm.tif",
-            "odm_dem/dtm.tif": own / "dtm.tif", "odm_georeferencing/odm_georeferenced_model.las": own / "cloud.las",
-            "odm_georeferencing/coords.txt": own / "offset.txt", "3d_tiles/model/tileset.json": own / "tiles" / "tileset.json"}
-    for name, original in same.items():
-        expect((odm / name).is_file() and sha(odm / name) == sha(original), f"odm/{name} is not the file {original.name}")
-    obj, original = Obj(odm / "odm_texturing" / "odm_textured_model_geo.obj"), Obj(own / "mesh.obj")
-    expect(obj.triangles == original.triangles and obj.positions == original.positions, "odm_textured_model_geo.obj is another mesh")
-    tileset_checker.Checker(odm / "3d_tiles" / "model" / "tileset.json").check()
 
 
 def check_pieces(skyquilt, project, wanted):

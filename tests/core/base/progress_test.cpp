@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace skyquilt::base {
@@ -27,6 +29,25 @@ TEST(Progress, FinalLineShowsWhatWasDone) {
   for (const char* part : {"decode", "100 %", "photos/s", "all read"}) EXPECT_NE(text.find(part), std::string::npos) << text;
   EXPECT_EQ(text.find("ignored"), std::string::npos);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST(Progress, AListenerHearsSharesUpToTheEnd) {
+  std::vector<std::pair<std::string, double>> heard;
+  Progress::SetListener([&heard](const std::string& label, double share) { heard.emplace_back(label, share); });
+  Progress::SetQuiet(true);
+  {
+    Progress progress("decode", 40.0, "photos");
+    progress.Advance(10.0);  // too soon after the start to be told
+    progress.Finish();
+    Progress unknown("count", 0.0, "rays");
+    unknown.Finish();
+  }
+  Progress::SetListener({});
+  Progress("ignored", 1.0, "photos").Finish();
+  Progress::SetQuiet(false);
+  ASSERT_FALSE(heard.empty());
+  EXPECT_EQ(heard.back(), (std::pair<std::string, double>("decode", 1.0)));
+  for (const auto& [label, share] : heard) EXPECT_TRUE(label == "decode" && share >= 0.25 && share <= 1.0) << label << " " << share;
 }
 
 TEST(Progress, UnknownTotalShowsTheCount) {

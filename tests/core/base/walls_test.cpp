@@ -24,11 +24,12 @@ const Arrows& AllowedIncludes() {
   static const Arrows allowed = [] {
     Arrows arrows = {
         {"app",
-         {"bench", "viewer", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "tour",
+         {"bench", "viewer", "odm", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "tour",
           "evaluate", "core"}},
         {"bench", {"coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate", "core"}},
         {"viewer", {"coordinator", "prepare", "partition", "products", "surface", "buildings", "tour", "core"}},
         {"coordinator", {"simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "tour", "evaluate", "core"}},
+        {"odm", {"coordinator", "prepare", "surface", "core"}},
         {"buildings", {"surface", "core"}},
         {"tour", {"products", "surface", "core"}},
         {"evaluate", {"partition", "surface", "buildings", "core"}},

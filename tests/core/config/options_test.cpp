@@ -107,7 +107,7 @@ struct CloudOptions {
     using O = CloudOptions;
     return {{"size_m", &O::size_m, Range{0, 9}, "of the points"}, {"seed", &O::seed, Range(), "of the colours", Written::kWhenChanged}};
   }
-  static std::vector<FixedOption> Fixed() { return {{"radius_m", 0.06}, {"width", 1600}}; }
+  static std::vector<FixedOption> Fixed() { return {{"radius_m", 0.06}, {"width", 1600}, {"mirrored", false}}; }
   void Check(const std::string& section) const { CheckRanges(section, *this); }
 };
 
@@ -124,12 +124,15 @@ struct Clouds {
 
 TEST(Toml, AFixedOptionIsAcceptedWithItsValueOnly) {
   Clouds clouds;
-  ReadTomlText("[near]\nradius_m = 0.06\nwidth = 1600\nsize_m = 2\n", "old.toml", clouds.sections);
+  ReadTomlText("[near]\nradius_m = 0.06\nwidth = 1600\nmirrored = false\nsize_m = 2\n", "old.toml", clouds.sections);
   EXPECT_EQ(clouds.near.size_m, 2.0);
   ApplyOverride({"far.radius_m", "0.06"}, clouds.sections);
   const auto message = [&](const std::string& text) { return ErrorOf<base::UsageError>([&] { ReadTomlText(text, "old.toml", clouds.sections); }); };
   EXPECT_EQ(message("[near]\nradius_m = 0.1\n"), "old.toml: near.radius_m is fixed at 0.06 now and takes no other value; remove it (line 2)");
   EXPECT_NE(message("[near]\nwidth = \"wide\"\n").find("near.width is fixed at 1600 now"), std::string::npos);
+  EXPECT_NE(message("[near]\nmirrored = true\n").find("near.mirrored is fixed at false now"), std::string::npos);
+  EXPECT_NE(message("[near]\nmirrored = 0\n").find("near.mirrored is fixed at false now"), std::string::npos);
+  EXPECT_NE(message("[near]\nradius_m = false\n").find("near.radius_m is fixed at 0.06 now"), std::string::npos);
   EXPECT_NE(ErrorOf<base::UsageError>([&] { ApplyOverride({"near.width", "100"}, clouds.sections); }).find("near.width is fixed"), std::string::npos);
   EXPECT_EQ(WriteToml(clouds.sections).find("radius_m"), std::string::npos);
   // Results of earlier versions have the same hash.

@@ -39,7 +39,7 @@ std::vector<std::pair<double, double>> PointsOf(const GrowthResult& result, cons
   return points;
 }
 
-double SecondsOf(const GrowthStage& stage) {
+double StageSecondsOf(const GrowthStage& stage) {
   return stage.seconds;
 }
 double BytesOf(const GrowthStage& stage) {
@@ -62,7 +62,7 @@ std::string TimeVerdict(const GrowthResult& result, const std::vector<std::strin
   std::string beyond;
   for (const std::string& name : names) {
     if (name == kBudgetedStage || LastSeconds(result, name) < kShortStage_s) continue;
-    const std::optional<GrowthLaw> law = LawOf(PointsOf(result, name, SecondsOf));
+    const std::optional<GrowthLaw> law = LawOf(PointsOf(result, name, StageSecondsOf));
     if (law && law->exponent > most) beyond += fmt::format("{}{} ({:.2f})", beyond.empty() ? "" : ", ", name, law->exponent);
   }
   const std::string target = fmt::format("time of stages over {:.0f} s grows by at most {:.0f} times for {:.0f} times the photos (power {:.2f})",
@@ -149,8 +149,8 @@ BenchPage GrowthPage(const GrowthResult& result, const std::string& command) {
   page.sections.push_back({.id = "time",
                            .title = "Time",
                            .lead = "",
-                           .charts = {page::CurveChart(CurvesOf(result, names, SecondsOf), time)},
-                           .tables = {TableOf(result, names, "time", "Seconds", SecondsOf, BenchCell::Seconds)},
+                           .charts = {page::CurveChart(CurvesOf(result, names, StageSecondsOf), time)},
+                           .tables = {TableOf(result, names, "time", "Seconds", StageSecondsOf, BenchCell::Seconds)},
                            .pictures = {}});
   page.sections.push_back({.id = "memory",
                            .title = "Memory",

@@ -31,7 +31,7 @@ Turn AnyTurn() {
 }
 
 // A sample of a ray.
-struct Sample {
+struct ConeSample {
   Ray ray;
   double t = 0.0, length_m = 0.0;
   Turn turn;
@@ -40,8 +40,8 @@ struct Sample {
 };
 
 // A cone or a column of this width at t.
-Sample AnySample(double t, double length_m, double width_m, bool column) {
-  Sample sample;
+ConeSample AnySample(double t, double length_m, double width_m, bool column) {
+  ConeSample sample;
   sample.t = t;
   sample.length_m = length_m;
   sample.turn = AnyTurn();
@@ -56,7 +56,7 @@ int SomePoints() {
 }
 
 // Positions relative to the middle, metres, through a box of 20 m about it: a float there is exact to a thousandth of a millimetre.
-Vectors AroundMiddle(const Sample& sample, int points) {
+Vectors AroundMiddle(const ConeSample& sample, int points) {
   const Eigen::Vector3d middle = sample.Middle(), half = Eigen::Vector3d::Constant(10.0);
   const encoding::SpaceMap map = encoding::SpaceMap::Box(middle - half, middle + half);
   float x[kMaxPositions], y[kMaxPositions], z[kMaxPositions];
@@ -82,7 +82,7 @@ Moments MomentsOf(const Vectors& points) {
 }
 
 // Of a piece of space of this length along d and a square of this width across it.
-Eigen::Matrix3d Covariance(const Sample& sample) {
+Eigen::Matrix3d Covariance(const ConeSample& sample) {
   const Eigen::Vector3d& d = sample.ray.direction_enu;
   const Eigen::Matrix3d along = d * d.transpose();
   return (sample.length_m * sample.length_m * along + sample.Width() * sample.Width() * (Eigen::Matrix3d::Identity() - along)) / 12.0;
@@ -92,14 +92,14 @@ constexpr double kRounding_m = 5e-6;
 
 RC_GTEST_PROP(FootprintPositions, HaveTheirMiddleAsMean, ()) {
   const bool column = *rc::gen::arbitrary<bool>();
-  const Sample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), column);
+  const ConeSample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), column);
   RC_ASSERT(MomentsOf(AroundMiddle(sample, SomePoints())).mean.norm() < kRounding_m);
 }
 
 // Exactly, however near the ray begins.
 RC_GTEST_PROP(FootprintPositions, OfAColumnHaveTheVariancesOfItsPiece, ()) {
   const double length_m = Between(0.01, 4.0);
-  const Sample sample = AnySample(0.5 * length_m + std::exp(Between(-10.0, 5.0)), length_m, Between(0.01, 4.0), true);
+  const ConeSample sample = AnySample(0.5 * length_m + std::exp(Between(-10.0, 5.0)), length_m, Between(0.01, 4.0), true);
   const Eigen::Matrix3d expected = Covariance(sample);
   const double error = (MomentsOf(AroundMiddle(sample, SomePoints())).covariance - expected).norm();
   RC_ASSERT(error < 1e-4 * expected.norm() + kRounding_m * (length_m + sample.Width()));
@@ -110,7 +110,7 @@ RC_GTEST_PROP(FootprintPositions, OfASlowlyGrowingConeHaveTheVariancesOfItsPiece
   const double t = std::exp(Between(2.0, 7.0)), length_m = t * Between(1e-4, 0.02);
   const double width_m = length_m * std::exp(Between(-1.5, 1.5));
   RC_PRE(std::max(length_m, width_m) < 6.0);
-  const Sample sample = AnySample(t, length_m, width_m, false);
+  const ConeSample sample = AnySample(t, length_m, width_m, false);
   const Eigen::Matrix3d covariance = MomentsOf(AroundMiddle(sample, SomePoints())).covariance, expected = Covariance(sample);
   const Eigen::Vector3d& d = sample.ray.direction_enu;
   RC_ASSERT(std::abs(d.dot(covariance * d) / (length_m * length_m / 12.0) - 1.0) < 1e-3 + kRounding_m / length_m);
@@ -119,7 +119,7 @@ RC_GTEST_PROP(FootprintPositions, OfASlowlyGrowingConeHaveTheVariancesOfItsPiece
 
 // t_j = m + d sqrt(5/7) (2 j / 5 - 1), with the half length d (Zip-NeRF, section 3, for intervals that are short beside their distance).
 RC_GTEST_PROP(FootprintPositions, OfSixLieAlongTheRayAsPublished, ()) {
-  const Sample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), *rc::gen::arbitrary<bool>());
+  const ConeSample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), *rc::gen::arbitrary<bool>());
   const Vectors around = AroundMiddle(sample, 6);
   for (size_t j = 0; j < 6; ++j) {
     const double place = 2.0 * static_cast<double>(sample.turn.reversed ? 5 - j : j) / 5.0 - 1.0;
@@ -129,7 +129,7 @@ RC_GTEST_PROP(FootprintPositions, OfSixLieAlongTheRayAsPublished, ()) {
 
 RC_GTEST_PROP(FootprintPositions, AreInsideTheirIntervalAndTheirCone, ()) {
   const double length_m = Between(0.01, 8.0);
-  const Sample sample = AnySample(0.5 * length_m + std::exp(Between(-6.0, 5.0)), length_m, Between(0.01, 4.0), *rc::gen::arbitrary<bool>());
+  const ConeSample sample = AnySample(0.5 * length_m + std::exp(Between(-6.0, 5.0)), length_m, Between(0.01, 4.0), *rc::gen::arbitrary<bool>());
   for (const Eigen::Vector3d& p : AroundMiddle(sample, SomePoints())) {
     const double along = p.dot(sample.ray.direction_enu);
     RC_ASSERT(std::abs(along) < 0.5 * length_m);
@@ -139,7 +139,7 @@ RC_GTEST_PROP(FootprintPositions, AreInsideTheirIntervalAndTheirCone, ()) {
 }
 
 RC_GTEST_PROP(FootprintPositions, TurnAboutTheRay, ()) {
-  Sample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), *rc::gen::arbitrary<bool>());
+  ConeSample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), *rc::gen::arbitrary<bool>());
   const int points = SomePoints();
   const Turn turn = sample.turn;
   const Vectors turned = AroundMiddle(sample, points);
@@ -151,7 +151,7 @@ RC_GTEST_PROP(FootprintPositions, TurnAboutTheRay, ()) {
 
 // The same places along the ray, each at another side of it.
 RC_GTEST_PROP(FootprintPositions, ReversedAreMirroredAlongTheRay, ()) {
-  Sample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), true);
+  ConeSample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), true);
   const int points = SomePoints();
   sample.turn.reversed = false;
   const Vectors forwards = AroundMiddle(sample, points);
@@ -164,7 +164,7 @@ RC_GTEST_PROP(FootprintPositions, ReversedAreMirroredAlongTheRay, ()) {
 }
 
 RC_GTEST_PROP(FootprintPositions, OfOneAreTheBitsOfTheRay, ()) {
-  const Sample sample = AnySample(Between(0.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), true);
+  const ConeSample sample = AnySample(Between(0.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), true);
   const Eigen::Vector3d low = sample.Middle() - Eigen::Vector3d(3.0, 4.0, 5.0), high = sample.Middle() + Eigen::Vector3d(70.0, 20.0, 9.0);
   const encoding::SpaceMap map = *rc::gen::arbitrary<bool>() ? encoding::SpaceMap::Contracted(low, high) : encoding::SpaceMap::Box(low, high);
   Eigen::Vector3f p;
@@ -175,7 +175,7 @@ RC_GTEST_PROP(FootprintPositions, OfOneAreTheBitsOfTheRay, ()) {
 
 // Inside and far outside the survey: places are spread in metres, then contracted.
 RC_GTEST_PROP(FootprintPositions, OfAContractedMapAreThoseOfSpaceContracted, ()) {
-  const Sample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), *rc::gen::arbitrary<bool>());
+  const ConeSample sample = AnySample(Between(5.0, 300.0), Between(0.01, 4.0), Between(0.01, 4.0), *rc::gen::arbitrary<bool>());
   const int points = SomePoints();
   const encoding::SpaceMap map = encoding::SpaceMap::Contracted({-100.0, -80.0, -60.0}, {100.0, 80.0, 200.0});
   float x[kMaxPositions], y[kMaxPositions], z[kMaxPositions];
@@ -190,7 +190,7 @@ RC_GTEST_PROP(FootprintPositions, OfAContractedMapAreThoseOfSpaceContracted, ())
 RC_GTEST_PROP(FootprintPositions, AreFiniteWhateverTheWidth, ()) {
   const encoding::SpaceMap map = *rc::gen::arbitrary<bool>() ? encoding::SpaceMap::Contracted({-1.0, -1.0, -1.0}, {30.0, 20.0, 9.0})
                                                              : encoding::SpaceMap::Box({-1.0, -1.0, -1.0}, {30.0, 20.0, 9.0});
-  Sample sample = AnySample(1.0, Between(0.0, 4.0), 1.0, false);
+  ConeSample sample = AnySample(1.0, Between(0.0, 4.0), 1.0, false);
   sample.t = *rc::gen::element(0.0, 1e-300, 1e-30, 1e-6, 1.0, 1e6);
   sample.ray.pixel_pitch = *rc::gen::element(0.0F, 1e-30F, 0.01F, 1.0F);
   sample.ray.pixel_width = *rc::gen::element(0.0F, 0.1F, 1e30F);
@@ -201,7 +201,7 @@ RC_GTEST_PROP(FootprintPositions, AreFiniteWhateverTheWidth, ()) {
 }
 
 RC_GTEST_PROP(FootprintPositions, OfALineAreOnIt, ()) {
-  const Sample sample = AnySample(Between(0.0, 300.0), Between(0.01, 4.0), 0.0, true);
+  const ConeSample sample = AnySample(Between(0.0, 300.0), Between(0.01, 4.0), 0.0, true);
   for (const Eigen::Vector3d& p : AroundMiddle(sample, SomePoints())) {
     RC_ASSERT((p - p.dot(sample.ray.direction_enu) * sample.ray.direction_enu).norm() < kRounding_m);
   }

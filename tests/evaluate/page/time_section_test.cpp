@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "evaluate/page/page_parts.h"
 #include "evaluate/page/sections.h"
 
 namespace skyquilt::evaluate::page {

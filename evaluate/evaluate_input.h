@@ -9,7 +9,7 @@
 #include "core/scene/train_report.h"
 #include "core/survey/survey.h"
 #include "evaluate/evaluate_options.h"
-#include "evaluate/run_times.h"
+#include "evaluate/metrics/run_times.h"
 #include "partition/block.h"
 
 namespace skyquilt::evaluate {

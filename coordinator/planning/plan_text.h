@@ -7,7 +7,7 @@
 
 #include "coordinator/planning/needs.h"
 #include "coordinator/planning/plan.h"
-#include "evaluate/run_times.h"
+#include "evaluate/metrics/run_times.h"
 
 namespace skyquilt::coordinator {
 

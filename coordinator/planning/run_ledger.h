@@ -11,7 +11,7 @@
 
 #include "coordinator/project/project.h"
 #include "core/config/override.h"
-#include "evaluate/run_times.h"
+#include "evaluate/metrics/run_times.h"
 
 namespace skyquilt::coordinator {
 

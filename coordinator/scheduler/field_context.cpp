@@ -99,13 +99,10 @@ int ContextDoublings(size_t blocks, int log2_table_size, const Settings& setting
 }
 
 double SurveyBytes(const survey::Survey& survey) {
-  // Points are also sorted into maps and grids where a training starts.
-  constexpr double kCopies = 2.0;
-  const auto of = [](const std::vector<survey::SparsePoint>& points, const survey::PointTracks& tracks) {
-    return static_cast<double>(points.size() * (sizeof(survey::SparsePoint) + sizeof(size_t)) + tracks.observations() * sizeof(int32_t));
-  };
-  return kCopies * of(survey.points, survey.tracks) + of(survey.kept_points, survey.kept_tracks) +
-         static_cast<double>(survey.photos.size() * sizeof(survey::Photo));
+  // Points are also sorted into maps and grids where a training starts, and a tenth of their number is kept for scores.
+  constexpr double kCopies = 2.1;
+  const size_t points = survey.points.size() * (sizeof(survey::SparsePoint) + sizeof(size_t)) + survey.tracks.observations() * sizeof(int32_t);
+  return kCopies * static_cast<double>(points) + static_cast<double>(survey.photos.size() * sizeof(survey::Photo));
 }
 
 bool MustStream(const image::PixelCache& pixels, const survey::Survey& survey, const partition::BlockSet& blocks, const Settings& settings,

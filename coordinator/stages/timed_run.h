@@ -14,7 +14,7 @@
 #include "coordinator/planning/predictor.h"
 #include "coordinator/planning/run_ledger.h"
 #include "coordinator/stages/pipeline.h"
-#include "evaluate/run_times.h"
+#include "evaluate/metrics/run_times.h"
 
 namespace skyquilt::coordinator {
 

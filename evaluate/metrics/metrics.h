@@ -17,7 +17,7 @@
 #include "evaluate/ortho/ortho_scores.h"
 #include "evaluate/photos/kept_points.h"
 #include "evaluate/photos/photo_score.h"
-#include "evaluate/run_times.h"
+#include "evaluate/metrics/run_times.h"
 #include "evaluate/surface/surface_scores.h"
 
 namespace skyquilt::evaluate::metrics {

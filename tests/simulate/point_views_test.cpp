@@ -52,7 +52,7 @@ TEST_F(PointViewsTest, PhotosThatLookDownShowWhatIsNearThem) {
 }
 
 TEST_F(PointViewsTest, PhotosThatLookLevelMayShowAnything) {
-  ExpectNearIsEnough("facade", false);
+  ExpectNearIsEnough("street", false);
 }
 
 }  // namespace

@@ -144,7 +144,8 @@ TEST_P(PagedRendererTest, ManyOwnersGiveTheSameBits) {
     }
     going = std::any_of(in_flight.begin(), in_flight.end(), [](const RayInFlight& t) { return t.owner != kFinished; });
   }
-  EXPECT_GT(rounds, 1) << "no ray was passed on";
+  // Rays through opaque blocks may all end with their first owner.
+  if (std::get<2>(GetParam()) <= 0.0) EXPECT_GT(rounds, 1) << "no ray was passed on";
   for (size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(SameBits(render::FinalColor(in_flight[i].state), whole[i])) << i;
   for (const auto& store : stores) {
     int loaded = 0;

@@ -67,7 +67,14 @@ TEST(SurfacePainter, ShowsTheTextureWhereItIs) {
 TEST(SurfacePainter, TexturesThatStayInTheirFilesLookTheSame) {
   const TemporaryFolder folder;
   base::ThreadPool threads(2);
-  const std::vector<skyquilt::surface::TexturedTile> tiles = {PaintedTile(kWest, FourColors()), PlateTile(kEast)};  // the eastern one has no texture
+  std::vector<skyquilt::surface::TexturedTile> tiles = {PaintedTile(kWest, FourColors()), PlateTile(kEast)};  // the eastern one has no texture
+  for (skyquilt::surface::TexturedTile& tile : tiles) {
+    const size_t n = tile.position.size();
+    tile.normal.resize(n, Eigen::Vector3f::UnitZ());
+    tile.uv.resize(n, Eigen::Vector2f::Zero());
+    tile.views.resize(n, 3);
+    tile.filled.resize(n, 0);
+  }
   std::vector<std::filesystem::path> files;
   for (size_t i = 0; i < tiles.size(); ++i) {
     files.push_back(folder / (std::to_string(i) + ".bin"));

@@ -14,10 +14,10 @@
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
 #include "evaluate/buildings/building_scores.h"
+#include "evaluate/metrics/run_times.h"
 #include "evaluate/ortho/ortho_scores.h"
 #include "evaluate/photos/kept_points.h"
 #include "evaluate/photos/photo_score.h"
-#include "evaluate/metrics/run_times.h"
 #include "evaluate/surface/surface_scores.h"
 
 namespace skyquilt::evaluate::metrics {

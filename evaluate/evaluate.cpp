@@ -101,8 +101,8 @@ void ScorePhotos(const PhotoLoop& loop, const std::vector<int>& held_out, base::
 }
 
 // The times up to this stage, and of this one (here_s: without what earlier runs did) up to the writing of the report, which takes seconds.
-RunTimes WithEvaluation(RunTimes times, double seconds, double here_s) {
-  for (StageTimes& stage : times.stages) {
+metrics::RunTimes WithEvaluation(metrics::RunTimes times, double seconds, double here_s) {
+  for (metrics::StageTimes& stage : times.stages) {
     if (stage.stage == "evaluate") stage.took_s = seconds;
   }
   times.used_s += here_s;

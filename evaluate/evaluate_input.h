@@ -26,8 +26,8 @@ struct EvaluateInput {
   EvaluateOptions options;
   // Where the scores so far are saved, for an evaluation of the same key to continue from; its folder must exist. Empty: they are not saved.
   std::filesystem::path progress_file = {};
-  std::string progress_key = {};    // names whatever the scores depend on but the list of photos
-  const RunTimes* times = nullptr;  // of a run within a total time, up to this stage; null: of no such run
+  std::string progress_key = {};             // names whatever the scores depend on but the list of photos
+  const metrics::RunTimes* times = nullptr;  // of a run within a total time, up to this stage; null: of no such run
 
   std::filesystem::path ReportFolder() const { return project_folder / "report"; }
 };

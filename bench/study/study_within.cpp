@@ -63,9 +63,9 @@ VariantResult Study::RunWithin(const Variant& variant, double within_s) {
     base::LogError("{}: {}", variant.label, result.failure);
   }
   result.label = variant.label;
-  const evaluate::RunTimes times = pipeline.timed->Times();
+  const evaluate::metrics::RunTimes times = pipeline.timed->Times();
   result.wall_seconds = times.used_s;
-  for (const evaluate::StageTimes& stage : times.stages) {
+  for (const evaluate::metrics::StageTimes& stage : times.stages) {
     if (std::isfinite(stage.took_s)) result.stage_seconds.emplace_back(stage.stage, stage.took_s);
   }
   result.given_up = times.given_up;

@@ -55,9 +55,9 @@ nlohmann::ordered_json NeedsJson(const Needs& needs, const Room& room) {
           {"free_disk_bytes", base::NumberOrNull(room.disk)}};
 }
 
-std::string TimesJson(const evaluate::RunTimes& times) {
+std::string TimesJson(const evaluate::metrics::RunTimes& times) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::array();
-  for (const evaluate::StageTimes& stage : times.stages) {
+  for (const evaluate::metrics::StageTimes& stage : times.stages) {
     stages.push_back({{"stage", stage.stage},
                       {"planned_s", base::NumberOrNull(stage.planned_s)},
                       {"predicted_s", base::NumberOrNull(stage.predicted_s)},

@@ -19,7 +19,7 @@ std::string NeedsText(const Needs& needs, const Room& room);
 nlohmann::ordered_json PlanJson(const Plan& plan);
 nlohmann::ordered_json NeedsJson(const Needs& needs, const Room& room);
 // Content of plan.json: what was planned, what is planned now, and what was taken.
-std::string TimesJson(const evaluate::RunTimes& times);
+std::string TimesJson(const evaluate::metrics::RunTimes& times);
 
 // Totals for which a survey is worth asking: the least at which nothing has to be given up, rounded up to a usual duration, a third and three times
 // as much. `whole`: the plan for a total. Ascending.

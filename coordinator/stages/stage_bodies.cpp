@@ -185,7 +185,7 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp) {
   const image::PixelCache pixels =
       image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), pipeline.settings.run.image_width, threads);
   const std::optional<scene::TrainReport> training = scene::TryReadTrainReport(project.TrainReport());
-  const std::optional<evaluate::RunTimes> times = pipeline.timed ? std::optional(pipeline.timed->Times()) : std::nullopt;
+  const std::optional<evaluate::metrics::RunTimes> times = pipeline.timed ? std::optional(pipeline.timed->Times()) : std::nullopt;
   const evaluate::EvaluateInput input{.scene = &session.scene(),
                                       .survey = &survey,
                                       .blocks = &blocks,

@@ -215,8 +215,8 @@ void TimedRun::Ended(Pipeline& pipeline, const std::string& stage) {
                 base::FormatDuration(ledger_.UsedSeconds()), base::FormatDuration(within_s_));
 }
 
-evaluate::RunTimes TimedRun::Times() const {
-  evaluate::RunTimes times{.within_s = within_s_, .used_s = ledger_.UsedSeconds(), .stages = {}, .given_up = {}};
+evaluate::metrics::RunTimes TimedRun::Times() const {
+  evaluate::metrics::RunTimes times{.within_s = within_s_, .used_s = ledger_.UsedSeconds(), .stages = {}, .given_up = {}};
   for (const std::string& name : StagesOfRun()) {
     const StageRecord record = ledger_.Of(name);
     if (!record.begun && !std::isfinite(record.planned_s)) continue;

@@ -34,7 +34,7 @@ class TimedRun {
   void Ended(Pipeline& pipeline, const std::string& stage);
 
   // What was planned and used so far.
-  evaluate::RunTimes Times() const;
+  evaluate::metrics::RunTimes Times() const;
   double UsedSeconds() const { return ledger_.UsedSeconds(); }
 
   static RunLedger::Clock SystemClock();

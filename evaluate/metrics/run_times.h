@@ -6,7 +6,7 @@
 
 #include "evaluate/measured.h"
 
-namespace skyquilt::evaluate {
+namespace skyquilt::evaluate::metrics {
 
 // Seconds; kNotMeasured where it is not known.
 struct StageTimes {
@@ -23,4 +23,4 @@ struct RunTimes {
   std::vector<std::string> given_up;  // a text each
 };
 
-}  // namespace skyquilt::evaluate
+}  // namespace skyquilt::evaluate::metrics

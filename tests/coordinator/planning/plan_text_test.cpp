@@ -27,7 +27,7 @@ TEST(PlanText, NamesEveryStageAndWhatIsGivenUp) {
 }
 
 TEST(PlanText, TimesThatAreNotKnownAreNull) {
-  const evaluate::RunTimes times{.within_s = 60.0, .used_s = 30.0, .stages = {{.stage = "train", .predicted_s = 20.0}}, .given_up = {}};
+  const evaluate::metrics::RunTimes times{.within_s = 60.0, .used_s = 30.0, .stages = {{.stage = "train", .predicted_s = 20.0}}, .given_up = {}};
   const nlohmann::json json = base::ParseJson(TimesJson(times));
   EXPECT_TRUE(json.at("stages").at(0).at("took_s").is_null());
   EXPECT_EQ(json.at("stages").at(0).at("predicted_s"), 20.0);

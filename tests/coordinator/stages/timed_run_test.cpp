@@ -50,7 +50,7 @@ TEST_F(TimedRuns, AResumedRunHasTheOptionsOfTheStagesThatHaveBegun) {
     EXPECT_TRUE(settings->run.budget_has_everything);
   }
   EXPECT_EQ(timed.UsedSeconds(), 20.0);
-  const evaluate::RunTimes times = timed.Times();
+  const evaluate::metrics::RunTimes times = timed.Times();
   EXPECT_EQ(times.within_s, 100.0);
   ASSERT_EQ(times.stages.size(), 2U);
   EXPECT_EQ(times.stages.front().took_s, 12.0);

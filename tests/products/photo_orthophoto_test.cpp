@@ -184,7 +184,8 @@ TEST_F(PhotoOrthophotoTest, TheSurfaceModelHasTheCellsOfTheOtherHeightsAndNoHeig
         EXPECT_TRUE(edge || roof == Ground::InHouse(place.x(), place.y())) << place.transpose();
       }
     }
-    EXPECT_LT(static_cast<double>(without), 0.3 * static_cast<double>(planned.size())) << stated_m;
+    // The border follows nodes of 8 x 8 cells, so large cells lose a wider rim.
+    EXPECT_LT(static_cast<double>(without), (stated_m > 0.5 ? 0.3 : 0.05) * static_cast<double>(planned.size())) << stated_m;
   }
 }
 

@@ -1,4 +1,5 @@
 """Programs and packages of others that read the files of a surface: GDAL, Assimp, and packages of Node.js; and small readers of PLY and OBJ."""
+import fcntl
 import hashlib
 import json
 import math
@@ -51,25 +52,34 @@ class NodeReaders:
             return f"node is {version}, {OLDEST_NODE} or newer is needed"
         key = hashlib.sha256(b"".join((SOURCE / name).read_bytes() for name in PACKAGE_FILES)).hexdigest()[:12]
         installed = cache / key
-        if not installed.exists():
-            cache.mkdir(parents=True, exist_ok=True)
-            fresh = pathlib.Path(tempfile.mkdtemp(prefix="new_", dir=cache))
-            try:
-                for name in PACKAGE_FILES:
-                    shutil.copy(SOURCE / name, fresh / name)
-                done = subprocess.run(["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund", *HASTE], cwd=fresh, stdout=subprocess.PIPE,
-                                      stderr=subprocess.STDOUT, text=True, errors="replace", timeout=240)
-                expect("EUSAGE" not in done.stdout, f"package-lock.json does not fit package.json:\n{done.stdout}")
-                if done.returncode != 0:
-                    return f"npm could not install them: {done.stdout.strip().splitlines()[0] if done.stdout.strip() else done.returncode}"
-                fresh.rename(installed)  # complete or absent
-            except subprocess.TimeoutExpired:
-                return "npm did not end in time"
-            finally:
-                shutil.rmtree(fresh, ignore_errors=True)
-        for script in SOURCE.glob("*.mjs"):
-            shutil.copy(script, installed / script.name)
+        cache.mkdir(parents=True, exist_ok=True)
+        with open(cache / "lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)  # several tests ask for them at once
+            if not installed.exists() and (reason := self.install_packages(installed)):
+                return reason
+            for script in SOURCE.glob("*.mjs"):
+                copy = installed / script.name
+                if not copy.exists() or copy.read_bytes() != script.read_bytes():  # another test may be running it
+                    shutil.copy(script, copy)
         self.folder = installed
+        return ""
+
+    def install_packages(self, installed):
+        """Into the folder, which is complete or absent. The reason if that failed."""
+        fresh = pathlib.Path(tempfile.mkdtemp(prefix="new_", dir=installed.parent))
+        try:
+            for name in PACKAGE_FILES:
+                shutil.copy(SOURCE / name, fresh / name)
+            done = subprocess.run(["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund", *HASTE], cwd=fresh, stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, text=True, errors="replace", timeout=240)
+            expect("EUSAGE" not in done.stdout, f"package-lock.json does not fit package.json:\n{done.stdout}")
+            if done.returncode != 0:
+                return f"npm could not install them: {done.stdout.strip().splitlines()[0] if done.stdout.strip() else done.returncode}"
+            fresh.rename(installed)
+        except subprocess.TimeoutExpired:
+            return "npm did not end in time"
+        finally:
+            shutil.rmtree(fresh, ignore_errors=True)
         return ""
 
     def check(self, script, *files):

@@ -17,9 +17,8 @@ constexpr double kPlacedPhotos = 5.0;    // per second and thread: poses by tags
 constexpr double kUntaggedPoses = 3.0;   // times as long: more pairs, COLMAP's mapper
 constexpr double kFirstPicture_s = 2.0;
 constexpr double kStageStart_s = 1.0;  // reading survey and scene, writing small files
-// As fast as rays from a photo, which are measured: of texels, of map cells, of a video's pictures, which look farther. Town, orbit and Brighton
-// Beach.
-constexpr double kTexelRays = 0.9, kMapRays = 0.9, kVideoRays = 0.75;
+// As fast as rays from a photo, which are measured: of map cells, and of a video's pictures, which look farther. Town, orbit, Brighton Beach.
+constexpr double kMapRays = 1.0, kVideoRays = 0.75;
 constexpr double kMostFineMapCells = 8e6;   // as in products/map_products.cpp
 constexpr double kTexelLevels = 4.0 / 3.0;  // coarser tiles have a quarter of the texels each
 constexpr double kWallShare = 1.3;          // surface per ground
@@ -117,7 +116,7 @@ double Predictor::SurfaceSeconds(const Settings& settings) const {
   const double views = of_photos * (options.virtual_views ? 2.0 : 1.0);
   const double texels = detail / Squared(options.texel_gsd) * (options.tiles ? kTexelLevels : 1.0);
   const double fusion = views / std::max(1.0, rates_.fused_pixels) + detail / Squared(options.voxel_gsd) / (kMeshCells * size_.threads);
-  return kStageStart_s + RaySeconds(views + texels / kTexelRays) + (size_.level ? kLevelMesh : 1.0) * fusion;
+  return kStageStart_s + RaySeconds(views) + texels / (std::max(1.0, rates_.texels) * size_.Speedup()) + (size_.level ? kLevelMesh : 1.0) * fusion;
 }
 
 double Predictor::TourSeconds(const Settings& settings) const {

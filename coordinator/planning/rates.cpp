@@ -25,6 +25,7 @@ Rates Rates::Usual(int threads) {
   rates.scored_pixels = 0.25e6 * n;
   rates.painted_pixels = 1.5e6 * n;
   rates.fused_pixels = 0.5e6 * n;
+  rates.texels = 0.2e6 * n;
   rates.samples = kUsualSamples * std::min(std::max(1, threads), kMostTrainingThreads);
   rates.rays = kRaysPerSample * kUsualSamples * n;
   return rates;
@@ -32,7 +33,7 @@ Rates Rates::Usual(int threads) {
 
 void Rates::TakeSamples(double samples_per_second) {
   const double speed = samples > 0.0 ? std::clamp(samples_per_second / samples, 1.0 / kMostDifference, kMostDifference) : 1.0;
-  for (double* rate : {&rays, &scored_pixels, &painted_pixels, &fused_pixels}) *rate *= speed;
+  for (double* rate : {&rays, &scored_pixels, &painted_pixels, &fused_pixels, &texels}) *rate *= speed;
   samples = samples_per_second;
 }
 

@@ -13,6 +13,7 @@ struct Rates {
   double scored_pixels = 0.0;   // compared with a photo, all scores together
   double painted_pixels = 0.0;  // of the photos that an orthophoto is made from
   double fused_pixels = 0.0;    // of the views that a surface is made from
+  double texels = 0.0;          // of its texture: short rays, which few empty samples slow down
 
   // Of a machine with two such threads as docs/benchmarks.md tells of, scaled to this number of threads.
   static Rates Usual(int threads);

@@ -56,7 +56,7 @@ RC_GTEST_PROP(PredictorProperty, AFasterMachineIsNeverSlower, ()) {
   Rates slow = Rates::Usual(2);
   Rates fast = slow;
   for (double Rates::*rate : {&Rates::decoded_pixels, &Rates::feature_pixels, &Rates::matched_pairs, &Rates::samples, &Rates::rays,
-                              &Rates::scored_pixels, &Rates::painted_pixels, &Rates::fused_pixels}) {
+                              &Rates::scored_pixels, &Rates::painted_pixels, &Rates::fused_pixels, &Rates::texels}) {
     fast.*rate *= 0.1 * *rc::gen::inRange(10, 50);
   }
   for (const char* stage : kAll) RC_ASSERT(Predictor(Flight(photos), fast).Seconds(stage, {}) <= Predictor(Flight(photos), slow).Seconds(stage, {}));

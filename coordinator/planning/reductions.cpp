@@ -33,13 +33,13 @@ class ReductionList {
     }
     AddFiles();
     AddSurfaceDetail(4.0, 5.0, 4.0);
+    AddScoredPhotos(2);
     if (settings_.buildings.enabled && settings_.surface.enabled) {
       Add("buildings", "buildings", "no buildings are measured (buildings.enabled)", {{"buildings.enabled", "false"}});
     }
     if (settings_.surface.enabled) {
       Add("surface", "surface", "no mesh, cloud, tiles, terrain and buildings (surface.enabled)", {{"surface.enabled", "false"}});
     }
-    AddScoredPhotos(2);
     return std::move(list_);
   }
 

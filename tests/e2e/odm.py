@@ -314,6 +314,7 @@ def test(skyquilt, folder):
     dataset = data / "0b1c2d3e-task"
     # The simulated survey brings its camera model, so that no poses have to be searched.
     shutil.copytree(survey, dataset / "images")
+    (dataset / "images" / "images" / "wrong.jpg").write_text("this is no picture")
     (dataset / "image_groups.txt").write_text("a.jpg A\n")
     (folder / "small.toml").write_text(CONFIG)
     check_refusals(node, dataset, data)
@@ -325,7 +326,7 @@ def test(skyquilt, folder):
     check_cancelled(node, dataset, options)
     progress = Progress()
     try:
-        text = node.run(dataset.name, says=["prepare: nothing to do", "--split: taken, without effect", "image_groups.txt: taken"], **options)
+        text = node.run(dataset.name, says=["prepare: nothing to do", "photos are not used: wrong.jpg", "--split: taken, without effect", "image_groups.txt: taken"], **options)
     finally:
         progress.end()
     for stage in ("dataset", "opensfm", "openmvs", "odm_meshing", "mvs_texturing", "odm_georeferencing", "odm_dem", "odm_orthophoto", "odm_report"):

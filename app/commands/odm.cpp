@@ -89,7 +89,7 @@ void RunOdmCommand(const CommandState& state, const std::vector<std::string>& wo
   OdmSettings made = SettingsOf(state, request, dataset, effort);
   coordinator::Pipeline pipeline = state.Begin(project, std::move(made.settings), false);
   pipeline.level_settings = std::move(made.level);
-  base::LogInfo("Skyquilt {} with OpenDroneMap's options: {} photo(s) of {:.2g} megapixels, {} thread(s)", SKYQUILT_VERSION, workload.photos,
+  base::LogInfo("Skyquilt {} with OpenDroneMap's options: {} photo(s) of {:.1f} megapixels, {} thread(s)", SKYQUILT_VERSION, workload.photos,
                 workload.megapixels, workload.cores);
   if (pipeline.settings.run.time_budget_s > 0.0) {
     base::LogInfo("training takes about {}; --skyquilt-time-budget sets another time", base::FormatDuration(pipeline.settings.run.time_budget_s));

@@ -15,6 +15,11 @@ constexpr int kColorPixels = 4;
 // Largest difference of a channel between a pixel of the sky and the sky beside its tile.
 constexpr float kSkyPixelStep = 0.04F;
 
+// The tile, of `count` along an axis of `size` pixels, that a pixel is in.
+int TileAt(int pixel, int size, int count) {
+  return ((pixel + 1) * count - 1) / size;
+}
+
 }  // namespace
 
 RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixels, const brightness::Response& response)
@@ -32,6 +37,7 @@ RaySource::RaySource(const survey::Survey& survey, const image::PixelCache& pixe
     enu_from_cam_.push_back(photo.cam_from_enu.Inverse());
     corner_radii_.emplace_back(cameras_.back());
   }
+  sky_pixels_.resize(cameras_.size());
   UpdateExposures();
 }
 
@@ -46,11 +52,11 @@ void RaySource::SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, doub
   empty_share_ = empty_.empty() ? 0.0 : empty_share;
 }
 
-void RaySource::SetSkyBeside(int photo, const std::vector<Eigen::Vector3f>& srgb) {
+void RaySource::FindSkyPixels(int photo, const std::vector<Eigen::Vector3f>& srgb, const std::vector<char>& open) {
   const auto index = static_cast<size_t>(photo);
-  sky_beside_.resize(cameras_.size());
-  std::vector<Eigen::Vector3f>& recorded = sky_beside_[index];
-  recorded = srgb;
+  const int width = pixels_.Width(index), height = pixels_.Height(index);
+  const image::PixelCache::Photo pixels = pixels_.Copy(index);
+  std::vector<Eigen::Vector3f> recorded = srgb;
   for (size_t i = 0; i < recorded.size(); ++i) {
     const Tile tile{photo, static_cast<int16_t>(i % kTileColumns), static_cast<int16_t>(i / kTileColumns)};
     const std::array<brightness::Exposure, 3> exposure = response_.ExposureOf(index, Radius2(photo, TileCentre(tile)));
@@ -59,15 +65,56 @@ void RaySource::SetSkyBeside(int photo, const std::vector<Eigen::Vector3f>& srgb
       value = image::SrgbFromLinear(image::LinearFromSrgb(value) * exposure[c].gain);
     }
   }
+  const auto tile_of = [&](int x, int y) {
+    return static_cast<size_t>(TileAt(y, height, kTileRows)) * kTileColumns + static_cast<size_t>(TileAt(x, width, kTileColumns));
+  };
+  // From the open sky's pixels on, neighbour by neighbour.
+  std::vector<bool> sky(static_cast<size_t>(width) * static_cast<size_t>(height), false);
+  const auto at = [&](int x, int y) { return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x); };
+  std::vector<std::array<int, 2>> reached;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (open[tile_of(x, y)] == 0) continue;
+      sky[at(x, y)] = true;
+      reached.push_back({x, y});
+    }
+  }
+  while (!reached.empty()) {
+    const auto [from_x, from_y] = reached.back();
+    reached.pop_back();
+    for (const auto& [right, down] : {std::array<int, 2>{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const int x = from_x + right, y = from_y + down;
+      if (x < 0 || y < 0 || x >= width || y >= height || sky[at(x, y)]) continue;
+      const uint8_t* rgb = pixels.rgb.data() + 3 * at(x, y);
+      const Eigen::Vector3f value = Eigen::Vector3f(rgb[0], rgb[1], rgb[2]) / 255.0F;
+      if (!((value - recorded[tile_of(x, y)]).cwiseAbs().maxCoeff() <= kSkyPixelStep)) continue;  // nor where there is no colour
+      sky[at(x, y)] = true;
+      reached.push_back({x, y});
+    }
+  }
+  SkyPixels found{std::vector<int32_t>(recorded.size(), -1), {}};
+  for (size_t i = 0; i < recorded.size(); ++i) {
+    if (!recorded[i].allFinite()) continue;
+    found.first[i] = static_cast<int32_t>(found.sky.size());
+    const int row = static_cast<int>(i) / kTileColumns, column = static_cast<int>(i) % kTileColumns;
+    for (int y = row * height / kTileRows; y < (row + 1) * height / kTileRows; ++y) {
+      for (int x = column * width / kTileColumns; x < (column + 1) * width / kTileColumns; ++x) found.sky.push_back(sky[at(x, y)]);
+    }
+  }
+  sky_pixels_[index] = std::move(found);
 }
 
-bool RaySource::ShowsSky(int photo, int x, int y, const float* target_srgb) const {
+bool RaySource::ShowsSky(int photo, int x, int y) const {
   const auto index = static_cast<size_t>(photo);
-  if (sky_beside_.empty() || sky_beside_[index].empty()) return false;
-  const auto tile = [](int pixel, int size, int count) { return std::min(count - 1, pixel * count / size); };
-  const int row = tile(y, pixels_.Height(index), kTileRows), column = tile(x, pixels_.Width(index), kTileColumns);
-  const Eigen::Vector3f& sky = sky_beside_[index][static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column)];
-  return (sky - Eigen::Map<const Eigen::Vector3f>(target_srgb)).cwiseAbs().maxCoeff() <= kSkyPixelStep;  // false for NaN
+  const SkyPixels& pixels = sky_pixels_[index];
+  if (pixels.first.empty()) return false;
+  const int width = pixels_.Width(index), height = pixels_.Height(index);
+  const int row = TileAt(y, height, kTileRows), column = TileAt(x, width, kTileColumns);
+  const int32_t first = pixels.first[static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column)];
+  if (first < 0) return false;
+  const int begin_x = column * width / kTileColumns, end_x = (column + 1) * width / kTileColumns;
+  const int place = (y - row * height / kTileRows) * (end_x - begin_x) + x - begin_x;
+  return pixels.sky[static_cast<size_t>(first) + static_cast<size_t>(place)];
 }
 
 void RaySource::RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vector3d* origin_enu, Eigen::Vector3d* direction_enu) const {
@@ -181,7 +228,10 @@ bool RaySource::RayOf(int photo, int x, int y, int level, bool empty, PixelRay* 
   ray->level = level;
   ray->photo = photo;
   ray->exposure = brightness::Response::WithVignetting(exposures_[index], response_.LogVignetting(index, Radius2(photo, position)));
-  ray->empty = empty || ShowsSky(photo, x, y, ray->target_srgb);
+  // A square of pixels by its corners.
+  ray->empty =
+      empty || (ShowsSky(photo, x, y) &&
+                (size == 1 || (ShowsSky(photo, x + size - 1, y) && ShowsSky(photo, x, y + size - 1) && ShowsSky(photo, x + size - 1, y + size - 1))));
   return true;
 }
 

@@ -39,6 +39,12 @@ struct DepthPoint;  // worker/rays/depth_points.h
 constexpr int kSegmentRays = 6;
 constexpr int kSegmentReach = 16;
 
+// Which pixels of the tiles at the sky's rim show the sky.
+struct SkyPixels {
+  std::vector<int32_t> first;  // per tile, of its pixels in `sky`, row by row; -1: not at the rim. Empty: no tile is
+  std::vector<bool> sky;
+};
+
 // Tiles per photo.
 constexpr int kTileColumns = 48;
 constexpr int kTileRows = 36;
@@ -59,9 +65,11 @@ class RaySource {
   // Sets the tiles to draw from: `empty_share` of the rays come from `empty` tiles (PixelRay::empty is then true), the others from `inside` tiles.
   // All tiles of a list are equally likely.
   void SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, double empty_share);
-  // Colours of the sky beside the tiles of a photo, display values at reference exposure, [row][column], NaN where a tile is not at the sky's rim. Pixels
-  // of these tiles that have this colour show sky: their rays are empty, so that no matter gathers along the outlines of what stands before the sky.
-  void SetSkyBeside(int photo, const std::vector<Eigen::Vector3f>& srgb);
+  // Colours of the sky beside the tiles of a photo, display values at reference exposure, [row][column], NaN where a tile is not at the sky's rim;
+  // `open`: the tiles that show nothing but sky. Pixels of the rim that have this colour and join the open sky are sky, too: their rays are empty, so
+  // that no matter gathers along the outlines of what stands before the sky. Windows that mirror it do not join it.
+  // Several photos may be searched at once.
+  void FindSkyPixels(int photo, const std::vector<Eigen::Vector3f>& srgb, const std::vector<char>& open);
   // Mean colour of the training rays, taken in linear light, as display values at reference exposure.
   std::array<float, 3> MeanColor(uint64_t seed) const;
   bool HasRays() const { return !inside_.empty(); }
@@ -89,7 +97,7 @@ class RaySource {
  private:
   // The ray of a square of photo pixels whose first is (x, y); false when it is masked.
   bool RayOf(int photo, int x, int y, int level, bool empty, PixelRay* ray) const;
-  bool ShowsSky(int photo, int x, int y, const float* target_srgb) const;
+  bool ShowsSky(int photo, int x, int y) const;
 
   const image::PixelCache& pixels_;
   const brightness::Response& response_;
@@ -100,7 +108,7 @@ class RaySource {
   std::vector<geo::Rigid3d> enu_from_cam_;                      // per photo
   std::vector<std::array<brightness::Exposure, 3>> exposures_;  // per photo, on the axis
   std::vector<camera::CornerRadius> corner_radii_;              // per photo
-  std::vector<std::vector<Eigen::Vector3f>> sky_beside_;        // per photo, recorded display values of its tiles; empty: it shows no sky
+  std::vector<SkyPixels> sky_pixels_;                           // per photo
   std::vector<Tile> inside_, empty_;
   double empty_share_ = 0.0;
 };

@@ -224,30 +224,32 @@ void PointRanges::FindOpenSky(int photo) {
   }
 }
 
-void PointRanges::GiveSky(RaySource& source) const {
-  for (size_t photo = 0; photo < first_.size(); ++photo) {
-    if (first_[photo] < 0) continue;
-    const Range* ranges = ranges_.data() + first_[photo];
-    if (std::none_of(ranges, ranges + kTiles, [](const Range& range) { return range.Sky(); })) continue;
-    const std::vector<Eigen::Vector3f> colors = source.TileColors(static_cast<int>(photo));
+void PointRanges::GiveSky(RaySource& source, base::ThreadPool& threads) const {
+  threads.ParallelFor(static_cast<int64_t>(first_.size()), [&](int64_t task, int) {
+    const auto photo = static_cast<int>(task);
+    if (first_[static_cast<size_t>(task)] < 0) return;
+    const Range* ranges = ranges_.data() + first_[static_cast<size_t>(task)];
+    std::vector<char> open(kTiles);
+    for (size_t i = 0; i < kTiles; ++i) open[i] = ranges[i].open_sky > 1 ? 1 : 0;
+    if (std::ranges::count(open, 1) == 0) return;
+    const std::vector<Eigen::Vector3f> colors = source.TileColors(photo);
     std::vector<Eigen::Vector3f> beside(kTiles, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
     for (int row = 0; row < kTileRows; ++row) {
       for (int column = 0; column < kTileColumns; ++column) {
-        if (ranges[IndexOf(row, column)].open_sky > 1) continue;
-        // The nearest tile of the sky. Those at its rim may show other things, too.
+        if (open[IndexOf(row, column)] != 0) continue;
         int nearest = kSkyRim * kSkyRim + 1;
         for (int y = std::max(0, row - kSkyRim); y <= std::min(kTileRows - 1, row + kSkyRim); ++y) {
           for (int x = std::max(0, column - kSkyRim); x <= std::min(kTileColumns - 1, column + kSkyRim); ++x) {
             const int distance = (y - row) * (y - row) + (x - column) * (x - column);
-            if (ranges[IndexOf(y, x)].open_sky <= 1 || distance >= nearest) continue;
+            if (open[IndexOf(y, x)] == 0 || distance >= nearest) continue;
             nearest = distance;
             beside[IndexOf(row, column)] = colors[IndexOf(y, x)];
           }
         }
       }
     }
-    source.SetSkyBeside(static_cast<int>(photo), beside);
-  }
+    source.FindSkyPixels(photo, beside, open);
+  });
 }
 
 void PointRanges::FindFreeBalls(const survey::Survey& survey, const std::vector<int>& photos, base::ThreadPool& threads) {

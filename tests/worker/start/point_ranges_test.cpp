@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kLevelPhotoWidth = 96, kLevelPhotoHeight = 72;
 constexpr double kWall = 20.0;  // y of the wall, which is 10 m high
+constexpr int kWindowRow = 19;  // of pixels, three below the sky
 
 class PointRangesTest : public ::testing::Test {
  protected:
@@ -39,7 +40,8 @@ class PointRangesTest : public ::testing::Test {
       for (int y = 0; y < kLevelPhotoHeight; ++y) {
         const bool is_wall = (kLevelPhotoHeight / 2 - y) * kWall / 48.0 < 8.0;  // its top is 8 m above the cameras
         for (int x = 0; x < kLevelPhotoWidth; ++x) {
-          for (size_t c = 0; c < 3; ++c) picture.At(x, y)[c] = is_wall ? 150 : above[c];
+          const bool is_window = y == kWindowRow && windows_;
+          for (size_t c = 0; c < 3; ++c) picture.At(x, y)[c] = is_wall && !is_window ? 150 : above[c];
         }
       }
       image::SavePng(picture, folder_ / photo.name);
@@ -82,7 +84,7 @@ class PointRangesTest : public ::testing::Test {
   brightness::Response response_ = brightness::Response::Neutral(2, 1);
   std::unique_ptr<RaySource> source_;
   PointRanges ranges_;
-  bool sky_given_ = false;
+  bool sky_given_ = false, windows_ = false;
 };
 
 constexpr std::array<uint8_t, 3> kBlue = {150, 180, 230}, kLamplight = {230, 215, 190};
@@ -121,23 +123,26 @@ TEST_F(PointRangesTest, SkyIsBrightAndNotReddishAboveAllPoints) {
 }
 
 TEST_F(PointRangesTest, PixelsOfTheSkyBesideTheWallHaveEmptyRays) {
+  windows_ = true;
   Photograph(kBlue);
   const Tile mixed = TileOf(0.0, kWall, 10.0);  // its upper pixels show the sky, its lower ones the wall
-  source_->SetTiles({mixed}, {}, 0.0);
+  const Tile below{mixed.photo, mixed.column, static_cast<int16_t>(mixed.row + 1)};
+  source_->SetTiles({mixed, below}, {}, 0.0);
   base::Random random(1);
   const auto draw = [&](int* sky, int* wall) {
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < 100; ++i) {
       PixelRay ray;
       ASSERT_TRUE(source_->Draw(random, PhotoPyramid(), &ray));
-      const bool blue = ray.target_srgb[2] > 0.8F;
+      const bool blue = ray.target_srgb[2] > 0.8F, rises = ray.direction_enu.z() > 0.355;
       ++(blue ? *sky : *wall);
-      EXPECT_EQ(ray.empty, blue && sky_given_);
+      // Windows in the wall mirror the sky, and are not it.
+      EXPECT_EQ(ray.empty, blue && rises && sky_given_) << ray.direction_enu.transpose();
     }
   };
   int sky = 0, wall = 0;
   draw(&sky, &wall);
   sky_given_ = true;
-  ranges_.GiveSky(*source_);
+  ranges_.GiveSky(*source_, threads_);
   draw(&sky, &wall);
   EXPECT_GT(sky, 20);
   EXPECT_GT(wall, 20);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs scripts/skyquilt.slurm on a real Slurm of two nodes, on this machine: a small survey is trained over both, one node is taken away, then the time
-# limit comes. Slurm must queue the job again each time, and its result must have the bits of an undisturbed run. Takes about four minutes on two cores.
-#   scripts/slurm_on_one_machine.sh [--steps 10000] [--keep FOLDER]
+# limit comes. Slurm must queue the job again each time, and its result must have the bits of an undisturbed run. Takes about five minutes on two cores.
+#   scripts/slurm_on_one_machine.sh [--steps 15000] [--keep FOLDER]
 # --steps N       steps of each field; with few, the job is done before it can be disturbed
 # --keep FOLDER   an empty folder for everything that is made, to read the logs of Slurm afterwards (default: a temporary one, removed at the end)
 # Needs root (or sudo) and Debian's packages slurmctld, slurmd, slurm-client and munge; they need not be set up, and their services are not used. The

@@ -99,7 +99,7 @@ class Drill:
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("skyquilt")
-    parser.add_argument("--steps", type=int, default=10000)
+    parser.add_argument("--steps", type=int, default=15000)
     parser.add_argument("--keep", type=pathlib.Path)
     options = parser.parse_args()
     if os.getpid() != 1:

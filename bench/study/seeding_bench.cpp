@@ -29,19 +29,30 @@ std::vector<int> Ascending(std::vector<int> numbers, const char* flag) {
   return numbers;
 }
 
-// Points that the photos show, so many that each has about the wanted number of features.
-std::vector<survey::ColmapPoint> PointsOfFlight(const simulate::World& world, const simulate::PlaceSpec& place,
-                                                const std::vector<simulate::PhotoPlan>& photos, const SeedingOptions& options,
-                                                base::ThreadPool& threads) {
-  // So many photos show a point inside the flight.
-  const double views = 1.0 / ((1.0 - place.forward_overlap) * (1.0 - place.side_overlap));
-  const int per_photo = std::max(1, static_cast<int>(std::lround(options.features_per_photo / (views * options.errors.seen_share))));
+std::vector<survey::ColmapPoint> PointsFrom(const simulate::World& world, const simulate::PlaceSpec& place,
+                                            const std::vector<simulate::PhotoPlan>& photos, double per_photo, base::ThreadPool& threads) {
   std::vector<simulate::SurfaceSeed> seeds;
   for (int i = 0; i < static_cast<int>(photos.size()); ++i) {
-    const std::vector<simulate::SurfaceSeed> chosen = simulate::ChooseSeeds(place.camera, i, per_photo, place.seed);
+    const int count = std::max(1, static_cast<int>(std::lround(per_photo)));
+    const std::vector<simulate::SurfaceSeed> chosen = simulate::ChooseSeeds(place.camera, i, count, place.seed);
     seeds.insert(seeds.end(), chosen.begin(), chosen.end());
   }
   return simulate::MakeSparsePoints(world, place.camera, photos, seeds, place.seed, threads);
+}
+
+// Points that the photos show, so many that each photo has about the wanted number of features.
+std::vector<survey::ColmapPoint> PointsOfFlight(const simulate::World& world, const simulate::PlaceSpec& place,
+                                                const std::vector<simulate::PhotoPlan>& photos, const SeedingOptions& options,
+                                                base::ThreadPool& threads) {
+  // So many photos show a point inside the flight; fewer at its edge and behind buildings, which a first trial tells.
+  const double views = 1.0 / ((1.0 - place.forward_overlap) * (1.0 - place.side_overlap));
+  const double per_photo = options.features_per_photo / (views * options.errors.seen_share);
+  std::vector<survey::ColmapPoint> points = PointsFrom(world, place, photos, per_photo, threads);
+  double sightings = 0.0;
+  for (const survey::ColmapPoint& point : points) sightings += static_cast<double>(point.image_ids.size());
+  const double found = sightings * options.errors.seen_share / static_cast<double>(std::max<size_t>(1, photos.size()));
+  if (!(found > 0.0)) return points;
+  return PointsFrom(world, place, photos, per_photo * options.features_per_photo / found, threads);
 }
 
 SeedingRow MeasureSeeding(const SimulatedTracks& tracks, int n_threads) {

@@ -95,6 +95,7 @@ std::string GrowthVerdict(const SeedingResult& result) {
   std::string powers;
   bool met = true;
   for (const auto& [threads, points] : SeedingCurves(result, SeedingSeconds)) {
+    if (points.size() < 2) continue;  // the bench has not come so far
     const double power = FitGrowth(points).exponent;
     met = met && power <= most;
     powers += fmt::format("{}{:.2f} with {}", powers.empty() ? "" : ", ", power, ThreadsText(threads));

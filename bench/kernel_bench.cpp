@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -16,6 +15,7 @@
 #include "core/kernel/kernels.h"
 #include "core/kernel/machine_limits.h"
 #include "worker/step/field_step.h"
+#include "worker/step/random_batch.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -39,33 +39,6 @@ render::TrainedField MakeField(const KernelBenchOptions& options) {
   f.config.color_hidden_layers = options.color_hidden_layers;
   f.config.sh_degree = options.sh_degree;
   return f;
-}
-
-// Rays whose samples are at random positions in the unit cube, with random colours and directions.
-worker::RayBatch MakeBatch(const KernelBenchOptions& options, int feature_rows) {
-  worker::RayBatch batch;
-  base::Random random(7);
-  const auto n = static_cast<size_t>(options.samples_per_ray);
-  std::vector<float> x(n), y(n), z(n), t(n), unit_length(n, 1.0F);
-  const std::vector<float> sharpness(n, std::numeric_limits<float>::infinity());
-  const std::vector<int32_t> cell(n, 0);
-  for (int64_t ray = 0; ray < options.batch_samples / options.samples_per_ray; ++ray) {
-    worker::BatchRay r;
-    r.ray.origin_enu = Eigen::Vector3d::Zero();
-    r.ray.direction_enu = Eigen::Vector3d(random.Normal(), random.Normal(), random.Normal()).normalized();
-    for (float& channel : r.ray.target_srgb) channel = random.Uniform();
-    for (float& channel : r.background) channel = random.Uniform();
-    r.count = options.samples_per_ray;
-    for (size_t i = 0; i < n; ++i) {
-      x[i] = random.Uniform();
-      y[i] = random.Uniform();
-      z[i] = random.Uniform();
-      t[i] = static_cast<float>(i) / static_cast<float>(n);
-    }
-    batch.Append(r, x.data(), y.data(), z.data(), sharpness.data(), t.data(), unit_length.data(), cell.data());
-  }
-  batch.LayOutFeatures(feature_rows);
-  return batch;
 }
 
 // Measures the limit with all threads working at once.
@@ -129,7 +102,7 @@ KernelSpeed MeasureSpeed(const KernelBenchOptions& options, int n_threads, base:
   field.Initialize(random, parameters.grid, parameters.networks);
   worker::PhaseTimes times(threads.size());
   worker::FieldStep step(target, field, nullptr, worker::LuminancePlan{}, threads, times);
-  worker::RayBatch batch = MakeBatch(options, field.FeatureRows());
+  worker::RayBatch batch = worker::RandomBatch(options.batch_samples, options.samples_per_ray, field.FeatureRows(), 7);
   worker::StepOptions learning;
   learning.learning_rate = 1e-4;  // keeps densities low, so that no sample is hidden and skipped
   const int64_t samples = batch.n_samples;

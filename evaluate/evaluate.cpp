@@ -1,11 +1,14 @@
 #include "evaluate/evaluate.h"
 
+#include <fmt/core.h>
+
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/base/amounts.h"
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -29,6 +32,10 @@ namespace skyquilt::evaluate {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 void CheckInput(const EvaluateInput& input) {
   SKYQUILT_CHECK(input.scene != nullptr && input.survey != nullptr && input.blocks != nullptr && input.pixels != nullptr,
@@ -63,6 +70,7 @@ metrics::Scores NoScores(const EvaluateInput& input, const photos::HeldOutScorer
 // What takes part in the scoring of the photos.
 struct PhotoLoop {
   const EvaluateInput& input;
+  Clock::time_point start;  // of the evaluation
   photos::HeldOutScorer& scorer;
   surface::SurfaceScorer* made;  // null without a surface
   page::ReportPictures& pictures;
@@ -79,13 +87,20 @@ void ScoreAndAdd(const PhotoLoop& loop, int photo, base::ThreadPool& threads) {
   loop.scores.Add(scored);
 }
 
+// Whether there is time for one more photo, where there is a total time.
+bool HasTime(const PhotoLoop& loop, size_t scored_here) {
+  const metrics::RunTimes* times = loop.input.times;
+  return times == nullptr || metrics::HasTimeToScore(*times, loop.scores.photos.size(), scored_here, SecondsSince(loop.start));
+}
+
 // Goes on after the photos that an earlier evaluation has scored.
 void ScorePhotos(const PhotoLoop& loop, const std::vector<int>& held_out, base::ThreadPool& threads) {
   loop.saver.Resume();
   const std::vector<photos::PhotoScore>& photos = loop.scores.photos;
+  const size_t earlier = photos.size();
   base::Progress progress("evaluate", static_cast<double>(held_out.size()), "photos", static_cast<double>(photos.size()));
   try {
-    while (photos.size() < held_out.size()) {
+    while (photos.size() < held_out.size() && HasTime(loop, photos.size() - earlier)) {
       base::ThrowIfCancelled();
       ScoreAndAdd(loop, held_out[photos.size()], threads);
       loop.saver.SaveWhenDue();
@@ -117,23 +132,31 @@ metrics::Metrics Evaluate(const EvaluateInput& input, base::ThreadPool& threads)
   base::RequireWritableFolder(input.ReportFolder() / "images");
   metrics::Metrics metrics = metrics::MetricsBeforeScoring(input);
 
-  const std::vector<int> held_out = photos::SelectEvenly(photos::HeldOutPhotos(*input.survey), input.options.max_photos);
+  std::vector<int> held_out = photos::SelectEvenly(photos::HeldOutPhotos(*input.survey), input.options.max_photos);
+  if (input.times != nullptr) held_out = photos::SpreadOrder(held_out);
   photos::HeldOutScorer scorer(input);
   page::ReportPictures pictures(input, held_out);
   const std::unique_ptr<surface::SurfaceScorer> made = SurfaceOf(input);
   std::optional<buildings::BuildingsReport> found = buildings::CollectBuildings(input);
   metrics::Scores scores = NoScores(input, scorer);
   ScoreSaver saver(input, held_out, {.scores = &scores, .surface = made ? &made->photos() : nullptr, .pictures = &pictures.written()});
-  ScorePhotos({input, scorer, made.get(), pictures, saver, scores}, held_out, threads);
+  ScorePhotos({input, start, scorer, made.get(), pictures, saver, scores}, held_out, threads);
   if (made) metrics.surface = made->Result(input, scorer, threads);
   if (found) metrics.buildings = buildings::ScoreBuildings(found->compared, threads);
   std::optional<ortho::OrthoResult> map = ortho::ScoreOrtho(input.project_folder / "products", *input.survey, input.scene->info(), threads);
   if (map) metrics.ortho = map->scores;
   metrics.kept_points = photos::MeasureKeptPoints(*input.scene, *input.survey, *input.pixels, scorer.area().boxes, threads);
-  const double here_s = std::chrono::duration<double>(Clock::now() - start).count();
+  const double here_s = SecondsSince(start);
   metrics.evaluate_seconds = saver.earlier_s() + here_s;
 
-  if (input.times != nullptr) metrics.times = WithEvaluation(*input.times, metrics.evaluate_seconds, here_s);
+  if (input.times != nullptr) {
+    metrics.times = WithEvaluation(*input.times, metrics.evaluate_seconds, here_s);
+    if (scores.photos.size() < held_out.size()) {
+      metrics.times->scores_given_up = fmt::format("{} of {} held-out photos are scored", scores.photos.size(), held_out.size());
+      metrics.times->given_up.push_back(metrics.times->scores_given_up);
+      base::LogWarning("for {} in all: {}", base::FormatDuration(metrics.times->within_s), metrics.times->scores_given_up);
+    }
+  }
   metrics::Summarise(input, scores, &metrics);
   for (const metrics::Warning& warning : metrics.warnings) base::LogWarning("{}. {}", warning.finding, warning.advice);
   std::vector<control::MarkPicture> marks;

@@ -1,5 +1,8 @@
 #include "odm/after_poses.h"
 
+#include <fmt/core.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +15,8 @@
 #include "core/base/json_text.h"
 #include "core/base/order_statistics.h"
 #include "core/geo/enu_frame.h"
+#include "core/gis/boundary.h"
+#include "odm/report/shots.h"
 
 namespace skyquilt::odm {
 namespace {
@@ -98,6 +103,18 @@ void WriteAutoBoundary(const survey::Survey& survey, double distance_m, const st
   const std::string text = base::JsonText(nlohmann::json{{"type", "FeatureCollection"}, {"features", nlohmann::json::array({feature})}}) + "\n";
   if (std::filesystem::exists(file) && base::ReadFile(file) == text) return;
   base::WriteFileAtomically(file, text);
+}
+
+void RequireBoundaryMeets(const survey::Survey& survey, const std::filesystem::path& boundary) {
+  const surface::MapFrame frame = FrameOf(survey, geo::Vertical::kAsTagged);
+  const gis::Boundary wanted = gis::Boundary::Read(boundary, frame.georeferenced(), frame.zone());
+  Eigen::AlignedBox2d flown;
+  for (const survey::Photo& photo : survey.photos) flown.extend(frame.MapFromEnu(photo.cam_from_enu.OriginInSource()).head<2>());
+  for (const survey::SparsePoint& point : survey.points) flown.extend(frame.MapFromEnu(point.x_in_enu).head<2>());
+  const double apart_m = flown.exteriorDistance(Eigen::AlignedBox2d(wanted.min(), wanted.max()));
+  if (apart_m <= 0.0) return;
+  throw base::InputError(boundary, fmt::format("lies {:.0f} m beside the photos", std::max(1.0, apart_m)),
+                         "Give polygons around the survey as --boundary, longitude before latitude. The poses are kept for the next try");
 }
 
 }  // namespace skyquilt::odm

@@ -23,4 +23,7 @@ MapCells CellsOf(const Request& request, const survey::Survey& survey);
 // latitude, or local metres without geo-reference. `file` is written only when its content changes. Throws base::InputError.
 void WriteAutoBoundary(const survey::Survey& survey, double distance_m, const std::filesystem::path& file);
 
+// Throws base::InputError when this boundary lies beside all cameras and points: the maps would find that only after the training.
+void RequireBoundaryMeets(const survey::Survey& survey, const std::filesystem::path& boundary);
+
 }  // namespace skyquilt::odm

@@ -6,6 +6,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
+#include "core/gis/boundary.h"
 #include "prepare/input/list_files.h"
 
 namespace skyquilt::odm {
@@ -119,6 +120,8 @@ std::string ProvideBoundary(const Request& request, const Dataset& dataset) {
   }
   const fs::path file = dataset.project / "boundary.geojson";
   base::WriteFileAtomically(file, text);
+  // A point or a line would stop the run only after the training. Where it lies is asked when the poses are known.
+  gis::Boundary::Read(file, false, {});
   return file.string();
 }
 

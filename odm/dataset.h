@@ -28,7 +28,7 @@ struct Dataset {
 Dataset FindDataset(const Request& request, base::ThreadPool& threads);
 
 // Writes what --boundary says, a path or GeoJSON, to boundary.geojson in the project folder and returns its path; empty without --boundary. The
-// project folder must be there. Throws base::InputError for what is neither.
+// project folder must be there. Throws base::InputError for what is neither, and where there is no polygon.
 std::string ProvideBoundary(const Request& request, const Dataset& dataset);
 
 // JSON whose quotes were lost: NodeODM takes all double quotes out of an option's value. Names and texts get theirs back; what is valid JSON stays as

@@ -91,6 +91,7 @@ class OdmRun {
     const survey::Survey survey = survey::LoadSurvey(pipeline_.project.SurveyFolder());
     cells_ = CellsOf(request_, survey);
     pipeline_.settings.products.resolution_m = std::min(cells_.orthophoto_m, cells_.heights_m);
+    if (!pipeline_.settings.products.boundary.empty()) RequireBoundaryMeets(survey, pipeline_.settings.products.boundary);
     if (request_.Has("--auto-boundary") && pipeline_.settings.products.boundary.empty()) {
       const fs::path file = dataset_.project / "auto_boundary.geojson";
       WriteAutoBoundary(survey, request_.Number("--auto-boundary-distance"), file);

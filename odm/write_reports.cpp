@@ -1,13 +1,19 @@
 #include "odm/write_reports.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/base/log.h"
+#include "core/base/text.h"
 #include "core/base/thread_pool.h"
 #include "core/survey/exif.h"
 #include "odm/after_poses.h"
@@ -95,8 +101,6 @@ void WriteReports(const coordinator::Pipeline& pipeline, const Dataset& dataset,
       WriteJson(report / "ground_control_points.geojson", ControlPointsJson(survey, frame));
       ProvideFile(report / "ground_control_points.geojson", dataset.folder / "odm_georeferencing" / "ground_control_points.geojson");
     }
-  } else {
-    base::LogWarning("the survey has no place on Earth, so there is no shots.geojson");
   }
   WriteJson(report / "stats.json", StatsJson({.survey = &survey,
                                               .tags = &tags,
@@ -105,6 +109,23 @@ void WriteReports(const coordinator::Pipeline& pipeline, const Dataset& dataset,
                                               .area_m2 = OrthophotoArea(project.ProductsFolder()),
                                               .cloud_points = wishes.cloud ? CloudPoints(project.SurfaceFolder()) : -1}));
   if (wishes.report) ProvidePage(project, report);
+  for (const std::string& warning : ClosingWarnings(survey)) base::LogWarning("{}", warning);
+}
+
+std::vector<std::string> ClosingWarnings(const survey::Survey& survey) {
+  constexpr size_t kNamed = 5;
+  std::vector<std::string> warnings;
+  if (const size_t left_out = survey.unregistered.size(); left_out > 0) {
+    const auto named = std::span(survey.unregistered).first(std::min(kNamed, left_out));
+    warnings.push_back(fmt::format("{} of {} photos are not used: {}{}; warnings above say why, images.json has all of them", left_out,
+                                   left_out + survey.photos.size(), base::Join(named), left_out > kNamed ? ", ..." : ""));
+  }
+  if (!survey.georeferenced) {
+    warnings.emplace_back(
+        "the survey has no place on Earth: maps and mesh are in a local frame, and there is no shots.geojson. Add geo.txt or gcp_list.txt to the "
+        "photos, or use photos with GPS tags");
+  }
+  return warnings;
 }
 
 }  // namespace skyquilt::odm

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "coordinator/stages/pipeline.h"
+#include "core/survey/survey.h"
 #include "odm/dataset.h"
 #include "odm/map_options.h"
 
@@ -13,5 +16,8 @@ namespace skyquilt::odm {
 // where WebODM looks), stats.json, and with a report index.html with its pictures, metrics.json and report.pdf. Needs a survey; what comes of later
 // stages is left out where it is missing. seconds: of all stages so far. Throws base::InputError, base::Interrupted.
 void WriteReports(const coordinator::Pipeline& pipeline, const Dataset& dataset, const Wishes& wishes, double seconds);
+
+// Warnings that must be among the last lines of the output, of which NodeODM's page shows nine: photos that are not used, no place on Earth.
+std::vector<std::string> ClosingWarnings(const survey::Survey& survey);
 
 }  // namespace skyquilt::odm

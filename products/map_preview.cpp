@@ -59,14 +59,14 @@ const float* Sample(const gis::ReducedRaster& raster, const Eigen::Vector2d& cel
   return raster.image.At(static_cast<int>(x), static_cast<int>(y));
 }
 
-// channels: 4 with alpha, 3 without.
-image::Image8 OrthophotoPreview(const gis::ReducedRaster& raster, const CellLookup& lookup, int width, int height, int channels) {
-  image::Image8 preview(width, height, channels, 255);
+// With alpha.
+image::Image8 OrthophotoPreview(const gis::ReducedRaster& raster, const CellLookup& lookup, int width, int height) {
+  image::Image8 preview(width, height, 4, 255);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const float* rgba = Sample(raster, lookup.At(x, y));
       if (rgba == nullptr || rgba[3] < 128.0F) {
-        if (channels == 4) preview.At(x, y)[3] = 0;
+        preview.At(x, y)[3] = 0;
         continue;
       }
       for (int c = 0; c < 3; ++c) preview.At(x, y)[c] = static_cast<uint8_t>(std::lround(std::clamp(rgba[c], 0.0F, 255.0F)));
@@ -153,15 +153,11 @@ image::Image8 ShadedRelief(const image::ImageF& height_m, double cell_m) {
 }
 
 void WriteOrthophotoPicture(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& orthophoto,
-                            const std::filesystem::path& png, int max_width, bool transparent) {
+                            const std::filesystem::path& png, int max_width) {
   const auto [width, height] = PictureSize(info, grid, max_width);
   const CellLookup lookup(info, grid, width, height);
-  const image::Image8 picture = OrthophotoPreview(gis::ReadReduced(orthophoto, max_width), lookup, width, height, transparent ? 4 : 3);
-  if (transparent) {
-    base::WriteFileAtomically(png, image::EncodePng(picture, kPngLevel));
-  } else {
-    image::SavePng(picture, png);
-  }
+  const image::Image8 picture = OrthophotoPreview(gis::ReadReduced(orthophoto, max_width), lookup, width, height);
+  base::WriteFileAtomically(png, image::EncodePng(picture, kPngLevel));
 }
 
 void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& file, const std::string& preview) {
@@ -177,7 +173,7 @@ void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, cons
 
 void WriteMapPreviews(const scene::SceneInfo& info, const gis::MapGrid& ortho_grid, const std::filesystem::path& orthophoto,
                       const gis::MapGrid& dsm_grid, const std::filesystem::path& dsm, const std::filesystem::path& folder, int preview_width) {
-  if (!orthophoto.empty()) WriteOrthophotoPicture(info, ortho_grid, orthophoto, folder / "orthophoto.png", preview_width, false);
+  if (!orthophoto.empty()) WriteOrthophotoPicture(info, ortho_grid, orthophoto, folder / "orthophoto.png", preview_width);
   if (!dsm.empty()) {
     const auto [width, height] = PictureSize(info, dsm_grid, preview_width);
     const CellLookup lookup(info, dsm_grid, width, height);

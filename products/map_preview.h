@@ -15,9 +15,9 @@ namespace skyquilt::products {
 image::Image8 ShadedRelief(const image::ImageF& height_m, double cell_m);
 
 // Reads an orthophoto and writes it as PNG, at most max_width pixels wide: axes east and north, over the scene's box. Where it has no data the PNG is
-// transparent, or white. Throws base::InputError.
+// transparent. Throws base::InputError.
 void WriteOrthophotoPicture(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& orthophoto,
-                            const std::filesystem::path& png, int max_width, bool transparent);
+                            const std::filesystem::path& png, int max_width);
 // Writes orthophoto.json (products/map_products.h); preview: what a preview was made from, empty for the orthophoto itself. Throws base::InputError.
 void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& file, const std::string& preview = "");
 

@@ -65,7 +65,7 @@ std::filesystem::path WritePreview(const scene::SceneInfo& info, const PreviewMa
   gis::GeoTiffWriter tif(files.tif, spec);
   tif.WriteRows(0, map.grid.height, std::span<const uint8_t>(map.rgba));
   tif.Close();
-  WriteOrthophotoPicture(info, map.grid, files.tif, files.png, png_width, true);
+  WriteOrthophotoPicture(info, map.grid, files.tif, files.png, png_width);
   WriteMapBounds(info, map.grid, files.json, made_from);
   return files.png;
 }

@@ -103,6 +103,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   RaySource source(*job.survey, *job.pixels, response);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
   const PointRanges ranges(*job.survey, source, area.photos, threads);
+  ranges.GiveSky(source);
   const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, area.photos, surface, ranges, job.min_views, threads);
   std::vector<Tile> shown, sky;
   for (const Tile& tile : tiles) (ranges.OpenSky(tile) ? sky : shown).push_back(tile);
@@ -168,6 +169,7 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
   RaySource source(*job.survey, *job.pixels, loaded.response);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
   const PointRanges ranges(*job.survey, source, block.photos, threads);
+  ranges.GiveSky(source);
   const std::vector<Tile> tiles = TilesWithEnoughViews(source, *job.survey, block.photos, surface, ranges, job.min_views, threads);
   ChooseTiles(*job.survey, tiles, target, context, ranges, job.options.empty_ray_share, source, threads);
   if (!source.HasRays()) {

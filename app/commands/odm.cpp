@@ -9,9 +9,11 @@
 #include "app/settings/duration.h"
 #include "app/settings/presets.h"
 #include "core/base/amounts.h"
+#include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/system.h"
 #include "core/base/thread_pool.h"
+#include "odm/dataset_lock.h"
 #include "odm/map_options.h"
 #include "odm/option_table.h"
 #include "odm/quality.h"
@@ -27,6 +29,14 @@ struct OdmSettings {
   coordinator::Settings settings;
   std::optional<coordinator::Settings> level;
 };
+
+double TimeBudgetSeconds(const std::string& text) {
+  try {
+    return ParseDurationSeconds(text);
+  } catch (const base::UsageError& error) {
+    throw base::UsageError(std::string("--skyquilt-time-budget: ") + error.what());
+  }
+}
 
 // Defaults, then the preset, then OpenDroneMap's options, then the file of --skyquilt-config, then --skyquilt-time-budget.
 OdmSettings SettingsOf(const CommandState& state, const odm::Request& request, const odm::Dataset& dataset, const odm::Effort& effort) {
@@ -45,7 +55,7 @@ OdmSettings SettingsOf(const CommandState& state, const odm::Request& request, c
       settings = file.LoadOver(std::move(settings));
     }
     const std::string budget = request.Text("--skyquilt-time-budget");
-    if (!budget.empty()) settings.run.time_budget_s = ParseDurationSeconds(budget);
+    if (!budget.empty()) settings.run.time_budget_s = TimeBudgetSeconds(budget);
     // A file may ask for steps or for seconds instead.
     const bool decided = settings.run.time_budget_s > 0.0 || settings.train.steps > 0 || settings.train.seconds > 0.0;
     if (!decided) settings.run.time_budget_s = effort.training_s;
@@ -72,13 +82,14 @@ void RunOdmCommand(const CommandState& state, const std::vector<std::string>& wo
   base::ThreadPool pool(threads);
   const odm::Dataset dataset = odm::FindDataset(request, pool);
   const coordinator::Project project = coordinator::Project::Create(dataset.project);
+  const odm::DatasetLock lock(project.folder);
   const odm::Workload workload{.photos = dataset.photos, .megapixels = dataset.megapixels, .cores = pool.size()};
   const odm::Effort effort =
       odm::EffortOf(request.Text("--pc-quality"), request.Text("--feature-quality"), request.Has("--fast-orthophoto"), workload);
   OdmSettings made = SettingsOf(state, request, dataset, effort);
   coordinator::Pipeline pipeline = state.Begin(project, std::move(made.settings), false);
   pipeline.level_settings = std::move(made.level);
-  base::LogInfo("Skyquilt {} with OpenDroneMap's options: {} photo(s) of {:.0f} megapixels, {} thread(s)", SKYQUILT_VERSION, workload.photos,
+  base::LogInfo("Skyquilt {} with OpenDroneMap's options: {} photo(s) of {:.1f} megapixels, {} thread(s)", SKYQUILT_VERSION, workload.photos,
                 workload.megapixels, workload.cores);
   if (pipeline.settings.run.time_budget_s > 0.0) {
     base::LogInfo("training takes about {}; --skyquilt-time-budget sets another time", base::FormatDuration(pipeline.settings.run.time_budget_s));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <vector>
 
 #include "core/base/cancel.h"
@@ -21,6 +20,7 @@
 #include "prepare/poses/feature_matcher.h"
 #include "prepare/prepare_options.h"
 #include "worker/step/field_step.h"
+#include "worker/step/random_batch.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -56,33 +56,6 @@ render::TrainedField TrialField(const worker::TrainOptions& options) {
   return field;
 }
 
-worker::RayBatch TrialBatch(int64_t samples, int feature_rows) {
-  constexpr size_t kN = kSamplesOfRay;
-  worker::RayBatch batch;
-  base::Random random(5);
-  std::vector<float> x(kN), y(kN), z(kN), t(kN), unit_length(kN, 1.0F);
-  const std::vector<float> sharpness(kN, std::numeric_limits<float>::infinity());
-  const std::vector<int32_t> cell(kN, 0);
-  for (int64_t i = 0; i < std::max<int64_t>(1, samples / kSamplesOfRay); ++i) {
-    worker::BatchRay ray;
-    ray.ray.origin_enu = Eigen::Vector3d::Zero();
-    const Eigen::Vector3d direction{random.Normal(), random.Normal(), random.Normal()};
-    ray.ray.direction_enu = direction.normalized();
-    for (float& channel : ray.ray.target_srgb) channel = random.Uniform();
-    for (float& channel : ray.background) channel = random.Uniform();
-    ray.count = kSamplesOfRay;
-    for (size_t k = 0; k < kN; ++k) {
-      x[k] = random.Uniform();
-      y[k] = random.Uniform();
-      z[k] = random.Uniform();
-      t[k] = static_cast<float>(k) / static_cast<float>(kN);
-    }
-    batch.Append(ray, x.data(), y.data(), z.data(), sharpness.data(), t.data(), unit_length.data(), cell.data());
-  }
-  batch.LayOutFeatures(feature_rows);
-  return batch;
-}
-
 double TrainingSamples(const worker::TrainOptions& options, base::ThreadPool& threads) {
   const render::TrainedField target = TrialField(options);
   const field::HashField field(target.config);
@@ -94,7 +67,7 @@ double TrainingSamples(const worker::TrainOptions& options, base::ThreadPool& th
   field.Initialize(random, parameters.grid, parameters.networks);
   worker::PhaseTimes times(threads.size());
   worker::FieldStep step(target, field, nullptr, worker::LuminancePlan{}, threads, times);
-  worker::RayBatch batch = TrialBatch(options.batch_samples, field.FeatureRows());
+  worker::RayBatch batch = worker::RandomBatch(options.batch_samples, kSamplesOfRay, field.FeatureRows(), 5);
   worker::StepOptions learning;
   learning.learning_rate = 1e-4;  // keeps densities low, so that no sample is hidden and skipped
   step.Train(batch, learning, parameters, state, nullptr);

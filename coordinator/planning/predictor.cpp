@@ -16,15 +16,18 @@ constexpr double kVerifiedPairs = 75.0;  // per second and thread
 constexpr double kPlacedPhotos = 5.0;    // per second and thread: poses by tags and matches, adjustment
 constexpr double kUntaggedPoses = 3.0;   // times as long: more pairs, COLMAP's mapper
 constexpr double kFirstPicture_s = 2.0;
-constexpr double kStageStart_s = 1.0;       // reading survey and scene, writing small files
-constexpr double kShortRays = 3.0;          // times as fast as rays from a photo: of texels, which begin just before the surface
-constexpr double kMapRays = 2.0;            // the same: of map cells, which begin at the top of the blocks
+constexpr double kStageStart_s = 1.0;  // reading survey and scene, writing small files
+// As fast as rays from a photo, which are measured: of map cells, and of a video's pictures, which look farther. Town, orbit, Brighton Beach.
+constexpr double kMapRays = 1.0, kVideoRays = 0.75;
 constexpr double kMostFineMapCells = 8e6;   // as in products/map_products.cpp
 constexpr double kTexelLevels = 4.0 / 3.0;  // coarser tiles have a quarter of the texels each
 constexpr double kWallShare = 1.3;          // surface per ground
-constexpr double kMeshCells = 0.25e6;       // voxels of the surface per second and thread: fusion, mesh, files
-constexpr double kReportPhotos = 1.5;       // pictures of a photo written per second and thread
-constexpr double kBuildingCells = 0.5e6;    // cells of the surface per second and thread
+constexpr double kMeshCells = 0.12e6;       // voxels of the surface per second and thread
+constexpr double kLevelMesh = 2.0;          // times as long: walls, trees and what they hide
+constexpr double kReportPhotos = 3.0;       // pictures of a photo written per second and thread
+constexpr double kBuildingCells = 0.2e6;    // cells of the surface per second and thread
+constexpr double kMeshScores = 1.0;         // comparing the mesh with a photo, too: as long as comparing the field
+constexpr double kTruthScores_s = 6.0;
 constexpr double kMostCorrection = 6.0;
 constexpr double kOwnShare = 0.7, kOtherShare = 0.3;  // of the logarithm of a stage's ratio
 constexpr double kLeastTold_s = 1.0;
@@ -36,9 +39,9 @@ double Squared(double x) {
 }  // namespace
 
 Predictor::Kind Predictor::KindOf(const std::string& stage) {
-  if (stage == "prepare") return Kind::kPoses;
-  return stage == "products" || stage == "surface" || stage == "buildings" || stage == "tour" || stage == "evaluate" ? Kind::kRendering
-                                                                                                                     : Kind::kOther;
+  if (stage == "prepare") return kPoses;
+  if (stage == "products") return kMaps;
+  return stage == "surface" || stage == "buildings" || stage == "tour" || stage == "evaluate" ? kRendering : kOther;
 }
 
 double Predictor::RaySeconds(double rays) const {
@@ -95,11 +98,14 @@ double Predictor::ProductsSeconds(const Settings& settings) const {
     if (asked > 0.0) cells = from_photos ? std::min(cells, asked) : asked;
     seconds += RaySeconds(cells / kMapRays);
     if (from_photos) {
+      // Each pixel of each photo is a candidate for one cell; for fewer where cells are larger.
       const double painted = asked > 0.0 ? asked : std::min(size_.surface_pixels, products::kMostRenderedCells);
-      seconds += painted / std::max(1.0, rates_.painted_cells) + size_.TrainingPhotos() * size_.photo_pixels / std::max(1.0, rates_.decoded_pixels);
+      const double pixels = size_.TrainingPhotos() * size_.photo_pixels;
+      const double share = size_.surface_pixels > 0.0 ? std::min(1.0, painted / size_.surface_pixels) : 1.0;
+      seconds += share * pixels / std::max(1.0, rates_.painted_pixels) + pixels / std::max(1.0, rates_.decoded_pixels);
     }
   }
-  return seconds + RaySeconds(options.video_seconds * options.video_fps * options.video_width * options.video_height);
+  return seconds + RaySeconds(options.video_seconds * options.video_fps * options.video_width * options.video_height / kVideoRays);
 }
 
 double Predictor::SurfaceSeconds(const Settings& settings) const {
@@ -109,9 +115,8 @@ double Predictor::SurfaceSeconds(const Settings& settings) const {
   const double of_photos = size_.TrainingPhotos() * size_.PixelsAt(settings.run.image_width) / std::max(1.0, Squared(options.view_gsd));
   const double views = of_photos * (options.virtual_views ? 2.0 : 1.0);
   const double texels = detail / Squared(options.texel_gsd) * (options.tiles ? kTexelLevels : 1.0);
-  // Finer cells are seen by as many pixels; each pixel of a view is fused into the cells about its surface.
-  const double cells = detail / Squared(options.voxel_gsd) + 0.1 * views;
-  return kStageStart_s + RaySeconds(views + texels / kShortRays) + cells / (kMeshCells * size_.threads);
+  const double fusion = views / std::max(1.0, rates_.fused_pixels) + detail / Squared(options.voxel_gsd) / (kMeshCells * size_.threads);
+  return kStageStart_s + RaySeconds(views) + texels / (std::max(1.0, rates_.texels) * size_.Speedup()) + (size_.level ? kLevelMesh : 1.0) * fusion;
 }
 
 double Predictor::TourSeconds(const Settings& settings) const {
@@ -126,14 +131,13 @@ double Predictor::EvaluateSeconds(const Settings& settings) const {
   const double scored = std::min(most, size_.held_out);
   const double pixels = scored * size_.PixelsAt(options.image_width > 0 ? options.image_width : settings.run.image_width);
   const double pictures = std::min(scored, static_cast<double>(options.report_photos)) / (kReportPhotos * size_.threads);
-  double seconds =
-      2.0 * kStageStart_s + pictures + RaySeconds(pixels * (options.field_normals ? 2.0 : 1.0)) + pixels / std::max(1.0, rates_.scored_pixels);
-  if (size_.truth) seconds += 0.5 * pixels / std::max(1.0, rates_.scored_pixels);  // floaters, and the mesh against the true surface
-  return seconds;
+  const double comparing = (settings.surface.enabled ? 1.0 + kMeshScores : 1.0) * pixels / std::max(1.0, rates_.scored_pixels);
+  const double truth_s = size_.truth && settings.surface.enabled ? kTruthScores_s : 0.0;
+  return 2.0 * kStageStart_s + pictures + RaySeconds(pixels * (options.field_normals ? 2.0 : 1.0)) + comparing + truth_s;
 }
 
 double Predictor::Seconds(const std::string& stage, const Settings& settings) const {
-  const double factor = Factor(KindOf(stage));
+  const double factor = factors_[KindOf(stage)];
   if (stage == "prepare") return factor * PrepareSeconds(settings);
   if (stage == "train") return TrainSeconds(settings);
   if (stage == "products") return factor * ProductsSeconds(settings);
@@ -153,18 +157,16 @@ double Predictor::Seconds(const std::string& stage, const Settings& settings) co
 
 void Predictor::Correct(const std::string& stage, double predicted_s, double took_s) {
   const Kind kind = KindOf(stage);
-  if (kind == Kind::kOther || !(predicted_s >= kLeastTold_s) || !(took_s >= kLeastTold_s)) return;
+  if (kind == kOther || !(predicted_s >= kLeastTold_s) || !(took_s >= kLeastTold_s)) return;
   const double ratio = took_s / predicted_s;
-  const auto change = [ratio](double* factor, double share) {
-    *factor = std::clamp(*factor * std::pow(ratio, share), 1.0 / kMostCorrection, kMostCorrection);
-  };
-  change(kind == Kind::kPoses ? &poses_factor_ : &rendering_factor_, kOwnShare);
-  change(kind == Kind::kPoses ? &rendering_factor_ : &poses_factor_, kOtherShare);
+  for (size_t i = 0; i < kOther; ++i) {
+    factors_[i] = std::clamp(factors_[i] * std::pow(ratio, i == kind ? kOwnShare : kOtherShare), 1.0 / kMostCorrection, kMostCorrection);
+  }
 }
 
 void Predictor::TakeRays(double rays_per_second) {
   rates_.rays = rays_per_second;
-  rendering_factor_ = 1.0;
+  factors_[kMaps] = factors_[kRendering] = 1.0;
 }
 
 }  // namespace skyquilt::coordinator

@@ -2,6 +2,7 @@
 // It has no clock and no files of its own. Not thread-safe.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "coordinator/planning/rates.h"
@@ -22,16 +23,15 @@ class Predictor {
   double Seconds(const std::string& stage, const Settings& settings) const;
   // Of decoding the photos for training, which is part of stage "train".
   double DecodingSeconds(const Settings& settings) const;
-  // A stage of `predicted_s` took `took_s`. Later predictions of work of the same kind are changed by most of the ratio, others by a part of it, as
-  // the machine may be faster or slower in all. Ignored for times below a second, which say little.
+  // A stage of `predicted_s` took `took_s`. Later predictions of work of the same kind (poses, maps, or what is rendered photo by photo) are changed
+  // by most of the ratio, others by a part of it, as the machine may be faster or slower in all. Ignored for times below a second, which say little.
   void Correct(const std::string& stage, double predicted_s, double took_s);
   // Rays were measured in the scene itself: what other stages told of them is forgotten.
   void TakeRays(double rays_per_second);
 
  private:
-  enum class Kind { kPoses, kRendering, kOther };
+  enum Kind { kPoses, kMaps, kRendering, kOther };
   static Kind KindOf(const std::string& stage);
-  double Factor(Kind kind) const { return kind == Kind::kPoses ? poses_factor_ : kind == Kind::kRendering ? rendering_factor_ : 1.0; }
 
   double PrepareSeconds(const Settings& settings) const;
   double TrainSeconds(const Settings& settings) const;
@@ -43,7 +43,7 @@ class Predictor {
 
   WorkSize size_;
   Rates rates_;
-  double poses_factor_ = 1.0, rendering_factor_ = 1.0;
+  std::array<double, kOther + 1> factors_ = {1.0, 1.0, 1.0, 1.0};  // by kind
 };
 
 }  // namespace skyquilt::coordinator

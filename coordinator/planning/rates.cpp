@@ -10,6 +10,8 @@ namespace {
 constexpr double kRaysPerSample = 0.12;
 // Gradients go into one level's table per thread, of 8 by default.
 constexpr int kMostTrainingThreads = 8;
+constexpr double kUsualSamples = 1.2e6;   // per thread
+constexpr double kMostDifference = 10.0;  // of a machine from the usual one
 
 }  // namespace
 
@@ -20,16 +22,19 @@ Rates Rates::Usual(int threads) {
   // Brighton Beach: 18 photos, 1600 pixels wide for the search, in 9.6 s; Seneca: 167 in 152 s, nearly all searched twice. Two threads.
   rates.feature_pixels = 1.2e6 * n;
   rates.matched_pairs = 20.0 * n;
-  rates.scored_pixels = 0.15e6 * n;
-  rates.painted_cells = 0.5e6 * n;
-  rates.TakeSamples(1.0e6 * std::min(threads, kMostTrainingThreads));
-  if (threads > kMostTrainingThreads) rates.rays *= n / kMostTrainingThreads;
+  rates.scored_pixels = 0.25e6 * n;
+  rates.painted_pixels = 1.5e6 * n;
+  rates.fused_pixels = 0.5e6 * n;
+  rates.texels = 0.2e6 * n;
+  rates.samples = kUsualSamples * std::min(std::max(1, threads), kMostTrainingThreads);
+  rates.rays = kRaysPerSample * kUsualSamples * n;
   return rates;
 }
 
 void Rates::TakeSamples(double samples_per_second) {
+  const double speed = samples > 0.0 ? std::clamp(samples_per_second / samples, 1.0 / kMostDifference, kMostDifference) : 1.0;
+  for (double* rate : {&rays, &scored_pixels, &painted_pixels, &fused_pixels, &texels}) *rate *= speed;
   samples = samples_per_second;
-  rays = kRaysPerSample * samples_per_second;
 }
 
 }  // namespace skyquilt::coordinator

@@ -11,11 +11,14 @@ struct Rates {
   double samples = 0.0;         // of training
   double rays = 0.0;            // rendered from the places of photos
   double scored_pixels = 0.0;   // compared with a photo, all scores together
-  double painted_cells = 0.0;   // of the orthophoto from photos
+  double painted_pixels = 0.0;  // of the photos that an orthophoto is made from
+  double fused_pixels = 0.0;    // of the views that a surface is made from
+  double texels = 0.0;          // of its texture: short rays, which few empty samples slow down
 
   // Of a machine with two such threads as docs/benchmarks.md tells of, scaled to this number of threads.
   static Rates Usual(int threads);
-  // Rays follow from the speed of training where nothing better is known.
+  // Training was measured, so the machine is known to be faster or slower than the usual one: so are rays, scores, painting and fusion, which were
+  // not.
   void TakeSamples(double samples_per_second);
 };
 

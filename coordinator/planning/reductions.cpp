@@ -13,15 +13,15 @@ class ReductionList {
 
   std::vector<Reduction> Make() {
     AddVideo();
+    if (settings_.evaluate.field_normals) {
+      Add("normals", "evaluate", "normals of the field are not scored (evaluate.field_normals)", {{"evaluate.field_normals", "false"}});
+    }
+    for (const int most : {24, 12, 6}) AddScoredPhotos(most);
     if (settings_.surface.enabled && settings_.surface.virtual_views) {
       Add("gap views", "surface", "no virtual views of what photos leave out (surface.virtual_views)", {{"surface.virtual_views", "false"}});
     }
     AddMaps();
     AddSurfaceDetail(2.5, 3.0, 2.0);
-    if (settings_.evaluate.field_normals) {
-      Add("normals", "evaluate", "normals of the field are not scored (evaluate.field_normals)", {{"evaluate.field_normals", "false"}});
-    }
-    for (const int most : {24, 12, 6}) AddScoredPhotos(most);
     if (settings_.tour.auto_stops > 0) Add("tour", "tour", "no tour (tour.auto)", {{"tour.auto", "0"}});
     for (const int width : {1000, 800, 640}) AddWidth(width);
     if (settings_.products.preview) {
@@ -33,13 +33,13 @@ class ReductionList {
     }
     AddFiles();
     AddSurfaceDetail(4.0, 5.0, 4.0);
+    AddScoredPhotos(2);
     if (settings_.buildings.enabled && settings_.surface.enabled) {
       Add("buildings", "buildings", "no buildings are measured (buildings.enabled)", {{"buildings.enabled", "false"}});
     }
     if (settings_.surface.enabled) {
       Add("surface", "surface", "no mesh, cloud, tiles, terrain and buildings (surface.enabled)", {{"surface.enabled", "false"}});
     }
-    AddScoredPhotos(2);
     return std::move(list_);
   }
 
@@ -54,10 +54,14 @@ class ReductionList {
     if (seconds > 0.0) Add("video", "products", "no video (products.video_seconds)", {{"products.video_seconds", "0"}});
   }
 
-  // Cells as large as the photos' pixels at the training width, then twice as large. Their size is known when there are blocks.
+  // Cells of 1.5 and 2 pixels of the full photos, then of 1, 2 and 3 at the training width. Their size is known when there are blocks.
   void AddMaps() {
     if (size_.level || !(size_.gsd_m > 0.0) || !(settings_.products.ortho || settings_.products.dsm)) return;
-    for (const double factor : {1.0, 2.0, 3.0}) {
+    const int width = settings_.run.image_width;
+    const double full = width > 0 && width < size_.photo_width ? static_cast<double>(width) / size_.photo_width : 1.0;
+    for (const double factor : {1.5 * full, 2.0 * full, 1.0, 2.0, 3.0}) {
+      const bool below = factor == 1.5 * full || factor == 2.0 * full;  // the detail of training
+      if (below && (factor >= 1.0 || settings_.products.ortho_source != "photos")) continue;
       const std::string cell = fmt::format("{:.3g}", factor * size_.gsd_m);
       if (settings_.products.resolution_m >= std::stod(cell)) continue;
       Add("maps", "products", fmt::format("maps with cells of {} m (products.resolution_m)", cell), {{"products.resolution_m", cell}});

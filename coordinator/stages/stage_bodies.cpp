@@ -200,6 +200,7 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp) {
                                       .times = times ? &*times : nullptr};
   pipeline.metrics = evaluate::Evaluate(input, threads);
   const evaluate::metrics::Metrics& metrics = pipeline.metrics;
+  if (metrics.times && !metrics.times->scores_given_up.empty()) pipeline.timed->GaveUp("evaluate", "scores", metrics.times->scores_given_up);
   base::LogInfo(
       "{} held-out photos: PSNR {:.2f} dB, SSIM {:.3f}, FLIP {:.3f} over the {:.0f} % of pixels that are covered; PSNR of full frames {:.2f} dB",
       metrics.photos.size(), metrics.psnr, metrics.ssim, metrics.flip, 100.0 * metrics.coverage, metrics.psnr_full_frame);

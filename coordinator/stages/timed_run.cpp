@@ -165,7 +165,8 @@ void TimedRun::Decide(Pipeline& pipeline, const std::string& stage) {
   std::vector<config::Override> changes;
   std::vector<Reduction> now;
   for (const Reduction& reduction : plan.reductions) {
-    if (IndexOf(reduction.stage) <= IndexOf(stage)) now.push_back(reduction);
+    // Scoring ends by itself when its time is up, so what was reserved for fewer photos is used by as many as it takes.
+    if (IndexOf(reduction.stage) <= IndexOf(stage) && reduction.what != "scores") now.push_back(reduction);
   }
   if (!training_is_given_ && stage == "partition") {
     // Only how many blocks can be trained follows from it.
@@ -192,7 +193,12 @@ void TimedRun::Decide(Pipeline& pipeline, const std::string& stage) {
   ApplyTo(pipeline, changes);
   const PlannedStage* planned = plan.Find(stage);
   ledger_.SetGivenUp(stage, given_up);
-  ledger_.Decide(stage, planned == nullptr ? 0.0 : planned->seconds, changes);
+  double predicted_s = planned == nullptr ? 0.0 : planned->seconds;
+  if (stage == "evaluate" && planned != nullptr) {
+    const double left_s = kPlannedShare * within_s_ - plan.used_s;
+    predicted_s = std::max(predicted_s, std::min(left_s, predictor_.Seconds(stage, pipeline.settings)));
+  }
+  ledger_.Decide(stage, predicted_s, changes);
   for (const std::string& text : TextsOf(now)) base::LogWarning("for {} in all: {}", base::FormatDuration(within_s_), text);
   if (!plan.feasible && planned != nullptr) {
     base::LogWarning("{} of {} are used, and the rest is predicted to end after {}", base::FormatDuration(plan.used_s),
@@ -215,8 +221,16 @@ void TimedRun::Ended(Pipeline& pipeline, const std::string& stage) {
                 base::FormatDuration(ledger_.UsedSeconds()), base::FormatDuration(within_s_));
 }
 
+void TimedRun::GaveUp(const std::string& stage, const std::string& what, const std::string& text) {
+  std::vector<GivenUp> all = ledger_.AllGivenUp();
+  std::erase_if(all, [&](const GivenUp& one) { return one.stage != stage || one.what == what; });
+  all.push_back({what, stage, text});
+  ledger_.SetGivenUp(stage, all);
+}
+
 evaluate::metrics::RunTimes TimedRun::Times() const {
-  evaluate::metrics::RunTimes times{.within_s = within_s_, .used_s = ledger_.UsedSeconds(), .stages = {}, .given_up = {}};
+  evaluate::metrics::RunTimes times{
+      .within_s = within_s_, .scored_until_s = kPlannedShare * within_s_, .used_s = ledger_.UsedSeconds(), .stages = {}, .given_up = {}};
   for (const std::string& name : StagesOfRun()) {
     const StageRecord record = ledger_.Of(name);
     if (!record.begun && !std::isfinite(record.planned_s)) continue;

@@ -32,6 +32,8 @@ class TimedRun {
   // Around a stage that is made.
   void Began(const std::string& stage);
   void Ended(Pipeline& pipeline, const std::string& stage);
+  // The stage that runs gave something up by itself.
+  void GaveUp(const std::string& stage, const std::string& what, const std::string& text);
 
   // What was planned and used so far.
   evaluate::metrics::RunTimes Times() const;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <string>
 #include <utility>
@@ -61,7 +62,9 @@ ReportPictures::ReportPictures(const EvaluateInput& input, const std::vector<int
 
 BrightnessReport ReportPictures::Brightness() const {
   BrightnessReport brightness = brightness_;
-  brightness.views = written_.views;
+  // Photos that were not scored, for lack of time, have no picture.
+  std::copy_if(written_.views.begin(), written_.views.end(), std::back_inserter(brightness.views),
+               [](const BrightnessView& view) { return !view.photo.empty(); });
   return brightness;
 }
 

@@ -23,4 +23,19 @@ std::vector<int> SelectEvenly(const std::vector<int>& photos, int count) {
   return chosen;
 }
 
+std::vector<int> SpreadOrder(const std::vector<int>& photos) {
+  size_t range = 1;
+  while (range < photos.size()) range *= 2;
+  std::vector<int> order;
+  for (size_t i = 0; i < range; ++i) {
+    // The bits of i from the last to the first.
+    size_t place = 0;
+    for (size_t bit = 1, mirrored = range / 2; bit < range; bit *= 2, mirrored /= 2) {
+      if ((i & bit) != 0) place += mirrored;
+    }
+    if (place < photos.size()) order.push_back(photos[place]);
+  }
+  return order;
+}
+
 }  // namespace skyquilt::evaluate::photos

@@ -14,5 +14,7 @@ std::vector<int> HeldOutPhotos(const survey::Survey& survey);
 std::vector<size_t> EvenlySpacedIndices(size_t n, int count);
 // `count` of the photos, chosen by EvenlySpacedIndices.
 std::vector<int> SelectEvenly(const std::vector<int>& photos, int count);
+// All of them, in an order in which the first few, however many, are spread over all: for scoring that may have to stop early.
+std::vector<int> SpreadOrder(const std::vector<int>& photos);
 
 }  // namespace skyquilt::evaluate::photos

@@ -58,10 +58,13 @@ PhotoSet ReadPhotos(const fs::path& root, const std::vector<std::string>& names,
     }
   }
   if (set.usable.size() < kMinPhotos) {
-    std::string found = "only " + std::to_string(set.usable.size()) + " of " + std::to_string(names.size()) + " photos can be used, at least " +
-                        std::to_string(kMinPhotos) + " are needed";
     const auto first = std::find_if(problems.begin(), problems.end(), [](const std::string& problem) { return !problem.empty(); });
-    if (first != problems.end()) found += " (first problem: " + *first + ")";
+    if (first == problems.end()) {
+      throw base::InputError(root, "has only " + std::to_string(names.size()) + " photos, at least " + std::to_string(kMinPhotos) + " are needed",
+                             "Add photos that show the same place from elsewhere");
+    }
+    const std::string found = "only " + std::to_string(set.usable.size()) + " of " + std::to_string(names.size()) + " photos can be used, at least " +
+                              std::to_string(kMinPhotos) + " are needed (first problem: " + *first + ")";
     throw base::InputError(root, found, "Copy the photos again or give another folder");
   }
   return set;

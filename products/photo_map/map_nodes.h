@@ -1,4 +1,4 @@
-// Plans a map that is painted from photos: what each photo's light is, and which photo shows which part of the ground best.
+// Plans a map that is painted from photos: which photo shows which part of the ground best.
 #pragma once
 
 #include <array>
@@ -39,10 +39,13 @@ struct MapNodes {
   std::vector<std::array<int32_t, kKeptChoices>> photos;  // the one that is to show the node, then others that see it, the best first; -1: none
   std::vector<uint8_t> seen;                              // number of photos with it in their frame, hidden or not, kMostSeen at most
 
+  static MapNodes Of(const gis::MapGrid& map);  // no photo shows any of them
   size_t Index(int column, int row) const { return static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column); }
   gis::MapGrid GridOf(const gis::MapGrid& map) const;  // with the nodes as cells
 };
 constexpr int kMostSeen = 8;
+// The middle of a node in cells of the map, whole numbers at centres of cells.
+Eigen::Vector2d NodeCell(int column, int row);
 
 // Places of the cells of a part of a map on Earth. The part must be smaller than a few kilometres: lines down are linear between its corners.
 class CellPlaces {
@@ -59,8 +62,6 @@ class CellPlaces {
 // Cameras in map space (easting, northing, height), as HeightGrid::IsVisible wants them.
 std::vector<Eigen::Vector3d> EyesOnMap(const survey::Survey& survey, const gis::MapProjection& projection);
 
-// From the field's colours where they are known, otherwise from what photos show of the same places. small: pictures with about a pixel per node.
-PhotoLight MeasureLight(const PhotoMapInput& input, PhotoPictures& small, base::ThreadPool& threads);
 // Photos whose colours are far from what the others and the field show of a place are not chosen there: something moved. Progress is shown; the same
 // result for any number of threads. Throws base::Interrupted.
 MapNodes ChoosePhotosOfNodes(const PhotoMapInput& input, const PhotoLight& light, PhotoPictures& small, base::ThreadPool& threads);

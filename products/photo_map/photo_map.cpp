@@ -4,6 +4,7 @@
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
+#include "products/photo_map/measure_light.h"
 #include "products/photo_map/tile_painter.h"
 
 namespace skyquilt::products {

@@ -4,6 +4,7 @@ process tree, starts it again, packs the results. Written from NodeODM's behavio
   python3 odm.py PROGRAM BUILD_FOLDER [NODE_CACHE]
 """
 import argparse
+import fcntl
 import importlib.util
 import json
 import math
@@ -273,7 +274,24 @@ def packed(dataset, archive):
         expect(name in names or any(entry.startswith(name + "/") for entry in names), f"{name} is not packed")
 
 
+def check_one_at_a_time(node, dataset):
+    """NodeODM restarts a task while the cancelled run may still save its work."""
+    (dataset / "skyquilt").mkdir(exist_ok=True)
+    with open(dataset / "skyquilt" / "odm.lock", "w") as lock:
+        lock.write("4321")
+        lock.flush()
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        process = node.start(dataset.name, end_with="dataset")
+        first = process.stdout.readline()
+        expect("process 4321 still works on this dataset" in first, f"a second run begins with: {first}{process.stdout.read() if not first else ''}")
+        fcntl.flock(lock, fcntl.LOCK_UN)
+        text, _ = process.communicate(timeout=120)
+    expect(process.returncode == 0 and "Finished dataset stage" in text, f"the second run ended with {process.returncode}:\n{text}")
+
+
 def check_refusals(node, dataset, data):
+    node.run(dataset.name, status=2, says="--skyquilt-time-budget: 'soon'", skyquilt_time_budget="soon")
+    node.run(dataset.name, status=1, says="no polygon", boundary='{"type":"Point","coordinates":[9,45]}')
     node.run(dataset.name, status=2, says="Did you mean --orthophoto-resolution?", orthofoto_resolution="3")
     node.run(dataset.name, status=2, says="several spectral bands", radiometric_calibration="camera")
     node.run(dataset.name, status=2, says="--crop must be at least 0", crop="-1")
@@ -296,9 +314,11 @@ def test(skyquilt, folder):
     dataset = data / "0b1c2d3e-task"
     # The simulated survey brings its camera model, so that no poses have to be searched.
     shutil.copytree(survey, dataset / "images")
+    (dataset / "images" / "images" / "wrong.jpg").write_text("this is no picture")
     (dataset / "image_groups.txt").write_text("a.jpg A\n")
     (folder / "small.toml").write_text(CONFIG)
     check_refusals(node, dataset, data)
+    check_one_at_a_time(node, dataset)
 
     options = {"dsm": True, "dtm": True, "d3_tiles": True, "gltf": True, "pc_ept": True, "cog": True, "split": "400", "orthophoto_png": True,
                "orthophoto_cutline": True, "orthophoto_resolution": "40", "dem_resolution": "80", "ignore_gsd": True, "use_exif": False, "pc_quality": "low",
@@ -306,7 +326,7 @@ def test(skyquilt, folder):
     check_cancelled(node, dataset, options)
     progress = Progress()
     try:
-        text = node.run(dataset.name, says=["prepare: nothing to do", "--split: taken, without effect", "image_groups.txt: taken"], **options)
+        text = node.run(dataset.name, says=["prepare: nothing to do", "photos are not used: wrong.jpg", "--split: taken, without effect", "image_groups.txt: taken"], **options)
     finally:
         progress.end()
     for stage in ("dataset", "opensfm", "openmvs", "odm_meshing", "mvs_texturing", "odm_georeferencing", "odm_dem", "odm_orthophoto", "odm_report"):
@@ -329,6 +349,9 @@ def test(skyquilt, folder):
     for name in ("odm_orthophoto/odm_orthophoto.png", "odm_dem/dtm.tif"):
         expect(not (dataset / name).exists(), f"{name} is left of an earlier run")
     text = node.run(dataset.name, says=["products: nothing to do", "evaluate started"], rerun_from="odm_report", **options)
+    far = '{"type":"Polygon","coordinates":[[[9,45],[9.1,45],[9.1,45.1],[9,45]]]}'
+    text = node.run(dataset.name, status=1, says=["beside the photos", "--boundary"], **options, boundary=far)
+    expect("Running openmvs stage" not in text, f"a boundary elsewhere is found late:\n{text}")
     copy = folder / "copy"
     text = node.run(dataset.name, says="results copied", end_with="opensfm", copy_to=str(copy), **options)
     expect("Running openmvs stage" not in text, f"--end-with opensfm runs more:\n{text}")

@@ -85,6 +85,7 @@ TEST_F(OdmDataset, TheBoundaryIsAFileOrItsText) {
   EXPECT_EQ(base::ReadFile(provide((folder_ / "site.geojson").string())), text);
   EXPECT_EQ(base::ParseJson(base::ReadFile(provide("{type:Polygon,coordinates:[[[1,2],[3,4],[5,6],[1,2]]]}"))), base::ParseJson(text));
   EXPECT_NE(InputErrorOf([&] { provide("site"); }).find("--boundary"), std::string::npos);
+  EXPECT_NE(InputErrorOf([&] { provide("{type:Point,coordinates:[1,2]}"); }).find("no polygon"), std::string::npos);
 }
 
 survey::Survey FlightAt(double agl_m) {
@@ -111,6 +112,24 @@ TEST(AfterPoses, CellsAreNotFinerThanPixels) {
   EXPECT_NEAR(cells({"--dem-resolution", "20"}, 60.0).heights_m, 0.2, 1e-12);
   EXPECT_NEAR(cells({}, 300.0).heights_m, 0.1, 1e-12);
   EXPECT_NEAR(cells({}, std::nan("")).heights_m, 0.05, 1e-12) << "an unknown height limits nothing";
+}
+
+TEST(AfterPoses, ABoundaryElsewhereIsRefused) {
+  const TemporaryFolder folder;
+  survey::Survey survey = FlightAt(60.0);
+  const auto error_with = [&](const std::string& ring) {
+    const fs::path file = folder / "area.geojson";
+    base::WriteFileAtomically(file, R"({"type":"Polygon","coordinates":[[)" + ring + "]]}");
+    return InputErrorOf([&] { RequireBoundaryMeets(survey, file); });
+  };
+  EXPECT_EQ(error_with("[40,20],[90,20],[90,90],[40,20]"), "") << "a corner of the flight";
+  EXPECT_NE(error_with("[60,0],[90,0],[90,90],[60,0]").find("lies 10 m beside the photos"), std::string::npos) << "the cameras end at 50";
+  survey.points.push_back({.x_in_enu = {70.0, 10.0, 0.0}});
+  EXPECT_EQ(error_with("[60,0],[90,0],[90,90],[60,0]"), "") << "what the photos show";
+  survey.georeferenced = true;
+  survey.origin = {47.0, 8.0, 400.0};
+  EXPECT_EQ(error_with("[7.999,46.999],[8.001,46.999],[8.001,47.001],[7.999,46.999]"), "");
+  EXPECT_NE(error_with("[46.999,7.999],[46.999,8.001],[47.001,8.001],[46.999,7.999]"), "") << "latitude before longitude";
 }
 
 TEST(AfterPoses, TheAutomaticBoundaryHoldsTheCameras) {

@@ -8,6 +8,7 @@
 #include "core/base/json_text.h"
 #include "odm/report/shots.h"
 #include "odm/report/stats.h"
+#include "odm/write_reports.h"
 #include "prepare/models/opensfm_json.h"
 #include "tests/support/nadir_photo.h"
 #include "tests/support/temporary_folder.h"
@@ -116,6 +117,18 @@ TEST(ImagesJson, HasARowPerPhoto) {
   EXPECT_EQ(rows.at(0).at("width"), 4000);
   EXPECT_EQ(rows.at(2).at("filename"), "c.jpg");
   EXPECT_EQ(rows.at(2).at("has_pose"), false);
+}
+
+TEST(ClosingWarnings, SayWhatTheUserShouldKnow) {
+  survey::Survey survey = PlainSurvey();
+  survey.unregistered.clear();
+  EXPECT_TRUE(ClosingWarnings(survey).empty());
+  survey.unregistered = {"1.jpg", "2.jpg", "3.jpg", "4.jpg", "5.jpg", "6.jpg"};
+  survey.georeferenced = false;
+  const std::vector<std::string> warnings = ClosingWarnings(survey);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_EQ(warnings[0].find("6 of 8 photos are not used: 1.jpg, 2.jpg, 3.jpg, 4.jpg, 5.jpg, ...; warnings"), 0U) << warnings[0];
+  EXPECT_NE(warnings[1].find("geo.txt"), std::string::npos) << warnings[1];
 }
 
 survey::Survey WithControl() {

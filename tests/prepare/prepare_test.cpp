@@ -202,6 +202,8 @@ TEST_F(PrepareTest, EmptyFoldersAndTextFilesHaveTheirOwnMessages) {
   ExpectInMessage("no such folder");
   fs::create_directories(folder_ / "images");
   ExpectInMessage("has no photos");
+  for (const char* name : {"a.jpg", "b.jpg"}) image::SaveJpeg(image::Image8(64, 48, 3, 90), folder_ / (std::string("images/") + name), 90);
+  ExpectInMessage("has only 2 photos, at least 3 are needed. Add photos");
   for (const char* name : {"a.jpg", "b.jpg", "c.jpg", "d.jpg"}) std::ofstream(folder_ / (std::string("images/") + name)) << "text";
   ExpectInMessage("only 0 of 4 photos can be used");
 }

@@ -12,6 +12,8 @@ namespace {
 
 // Number of pixels along each axis of a tile from which its mean colour is computed.
 constexpr int kColorPixels = 4;
+// Largest difference of a channel between a pixel of the sky and the sky beside its tile.
+constexpr float kSkyPixelStep = 0.04F;
 
 }  // namespace
 
@@ -42,6 +44,30 @@ void RaySource::SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, doub
   inside_ = std::move(inside);
   empty_ = std::move(empty);
   empty_share_ = empty_.empty() ? 0.0 : empty_share;
+}
+
+void RaySource::SetSkyBeside(int photo, const std::vector<Eigen::Vector3f>& srgb) {
+  const auto index = static_cast<size_t>(photo);
+  sky_beside_.resize(cameras_.size());
+  std::vector<Eigen::Vector3f>& recorded = sky_beside_[index];
+  recorded = srgb;
+  for (size_t i = 0; i < recorded.size(); ++i) {
+    const Tile tile{photo, static_cast<int16_t>(i % kTileColumns), static_cast<int16_t>(i / kTileColumns)};
+    const std::array<brightness::Exposure, 3> exposure = response_.ExposureOf(index, Radius2(photo, TileCentre(tile)));
+    for (size_t c = 0; c < 3; ++c) {
+      float& value = recorded[i][static_cast<Eigen::Index>(c)];
+      value = image::SrgbFromLinear(image::LinearFromSrgb(value) * exposure[c].gain);
+    }
+  }
+}
+
+bool RaySource::ShowsSky(int photo, int x, int y, const float* target_srgb) const {
+  const auto index = static_cast<size_t>(photo);
+  if (sky_beside_.empty() || sky_beside_[index].empty()) return false;
+  const auto tile = [](int pixel, int size, int count) { return std::min(count - 1, pixel * count / size); };
+  const int row = tile(y, pixels_.Height(index), kTileRows), column = tile(x, pixels_.Width(index), kTileColumns);
+  const Eigen::Vector3f& sky = sky_beside_[index][static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column)];
+  return (sky - Eigen::Map<const Eigen::Vector3f>(target_srgb)).cwiseAbs().maxCoeff() <= kSkyPixelStep;  // false for NaN
 }
 
 void RaySource::RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vector3d* origin_enu, Eigen::Vector3d* direction_enu) const {
@@ -155,7 +181,7 @@ bool RaySource::RayOf(int photo, int x, int y, int level, bool empty, PixelRay* 
   ray->level = level;
   ray->photo = photo;
   ray->exposure = brightness::Response::WithVignetting(exposures_[index], response_.LogVignetting(index, Radius2(photo, position)));
-  ray->empty = empty;
+  ray->empty = empty || ShowsSky(photo, x, y, ray->target_srgb);
   return true;
 }
 

@@ -29,7 +29,7 @@ struct PixelRay {
   float target_srgb[3] = {0, 0, 0};              // recorded display value, 0..1
   std::array<brightness::Exposure, 3> exposure;  // recorded light divided by light at reference exposure, per colour
   int photo = 0;
-  bool empty = false;                                   // the surface is behind the field, so the field must be transparent along this ray
+  bool empty = false;                                   // the surface is behind the field, or it is the sky: the field must be transparent there
   float point_distance_m = 0.0F, point_sigma_m = 0.0F;  // of a sparse point at its pixel, along the ray; sigma 0: none
 };
 
@@ -59,6 +59,9 @@ class RaySource {
   // Sets the tiles to draw from: `empty_share` of the rays come from `empty` tiles (PixelRay::empty is then true), the others from `inside` tiles.
   // All tiles of a list are equally likely.
   void SetTiles(std::vector<Tile> inside, std::vector<Tile> empty, double empty_share);
+  // Colours of the sky beside the tiles of a photo, display values at reference exposure, [row][column], NaN where a tile is not at the sky's rim. Pixels
+  // of these tiles that have this colour show sky: their rays are empty, so that no matter gathers along the outlines of what stands before the sky.
+  void SetSkyBeside(int photo, const std::vector<Eigen::Vector3f>& srgb);
   // Mean colour of the training rays, taken in linear light, as display values at reference exposure.
   std::array<float, 3> MeanColor(uint64_t seed) const;
   bool HasRays() const { return !inside_.empty(); }
@@ -86,6 +89,7 @@ class RaySource {
  private:
   // The ray of a square of photo pixels whose first is (x, y); false when it is masked.
   bool RayOf(int photo, int x, int y, int level, bool empty, PixelRay* ray) const;
+  bool ShowsSky(int photo, int x, int y, const float* target_srgb) const;
 
   const image::PixelCache& pixels_;
   const brightness::Response& response_;
@@ -96,6 +100,7 @@ class RaySource {
   std::vector<geo::Rigid3d> enu_from_cam_;                      // per photo
   std::vector<std::array<brightness::Exposure, 3>> exposures_;  // per photo, on the axis
   std::vector<camera::CornerRadius> corner_radii_;              // per photo
+  std::vector<std::vector<Eigen::Vector3f>> sky_beside_;        // per photo, recorded display values of its tiles; empty: it shows no sky
   std::vector<Tile> inside_, empty_;
   double empty_share_ = 0.0;
 };

@@ -13,7 +13,7 @@
 namespace skyquilt::worker {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kInfiniteDistance = std::numeric_limits<float>::infinity();
 constexpr size_t kTiles = static_cast<size_t>(kTileRows) * kTileColumns;
 // Surfaces without points may be nearer than the points around them, and farther.
 constexpr float kNearSlack = 0.8F, kFarSlack = 1.25F;
@@ -25,6 +25,7 @@ constexpr double kAboveHorizon = 0.03;
 constexpr float kSkyBrightness = 0.45F, kSkyBlue = 1.0F;
 // Largest differences of a colour: to the tile above it, and to a tile of sky beside it where points are close.
 constexpr float kSkyStep = 0.12F, kSameSkyStep = 0.05F;
+constexpr int kSkyRim = 3;  // tiles from the open sky within which single pixels may show it
 // Where such a share of the sky has points above it, it is the walls of a room.
 constexpr double kIndoors = 0.25;
 constexpr double kAboveSky = 0.03;   // such points are higher by at least this, in the sine of the elevation
@@ -81,7 +82,7 @@ std::vector<PointRanges::Points> PointRanges::FindRanges(const survey::Survey& s
   const geo::Rigid3d& cam_from_enu = cam_from_enu_[static_cast<size_t>(photo)];
   const camera::Camera& camera = source.CameraOf(photo);
   std::array<std::array<float, 2>, kTiles> own;
-  own.fill({kInfinity, 0.0F});
+  own.fill({kInfiniteDistance, 0.0F});
   std::vector<float> distances;
   for (const uint32_t point : observed) {
     const Eigen::Vector3d x_in_cam = cam_from_enu * survey.points[point].x_in_enu;
@@ -99,7 +100,7 @@ std::vector<PointRanges::Points> PointRanges::FindRanges(const survey::Survey& s
   for (int row = 0; row < kTileRows; ++row) {
     for (int column = 0; column < kTileColumns; ++column) {
       Range& range = ranges_[static_cast<size_t>(first_[static_cast<size_t>(photo)]) + IndexOf(row, column)];
-      range = {near, kInfinity, 0.0F, kInfinity, 0};
+      range = {near, kInfiniteDistance, 0.0F, kInfiniteDistance, 0};
       bool close = false;
       for (const int reach : kReaches) {
         for (int y = std::max(0, row - reach); y <= std::min(kTileRows - 1, row + reach); ++y) {
@@ -220,6 +221,32 @@ void PointRanges::FindOpenSky(int photo) {
       }
     }
     if (!any) break;
+  }
+}
+
+void PointRanges::GiveSky(RaySource& source) const {
+  for (size_t photo = 0; photo < first_.size(); ++photo) {
+    if (first_[photo] < 0) continue;
+    const Range* ranges = ranges_.data() + first_[photo];
+    if (std::none_of(ranges, ranges + kTiles, [](const Range& range) { return range.Sky(); })) continue;
+    const std::vector<Eigen::Vector3f> colors = source.TileColors(static_cast<int>(photo));
+    std::vector<Eigen::Vector3f> beside(kTiles, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+    for (int row = 0; row < kTileRows; ++row) {
+      for (int column = 0; column < kTileColumns; ++column) {
+        if (ranges[IndexOf(row, column)].open_sky > 1) continue;
+        // The nearest tile of the sky. Those at its rim may show other things, too.
+        int nearest = kSkyRim * kSkyRim + 1;
+        for (int y = std::max(0, row - kSkyRim); y <= std::min(kTileRows - 1, row + kSkyRim); ++y) {
+          for (int x = std::max(0, column - kSkyRim); x <= std::min(kTileColumns - 1, column + kSkyRim); ++x) {
+            const int distance = (y - row) * (y - row) + (x - column) * (x - column);
+            if (ranges[IndexOf(y, x)].open_sky <= 1 || distance >= nearest) continue;
+            nearest = distance;
+            beside[IndexOf(row, column)] = colors[IndexOf(y, x)];
+          }
+        }
+      }
+    }
+    source.SetSkyBeside(static_cast<int>(photo), beside);
   }
 }
 

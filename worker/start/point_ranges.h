@@ -36,6 +36,8 @@ class PointRanges {
   const Range& Of(const Tile& tile) const;
   // Whether every pixel of the tile shows sky, as those around it do, too. False where these ranges are empty.
   bool OpenSky(const Tile& tile) const { return !Empty() && Of(tile).open_sky > 1; }
+  // Tells the source, for training photos, which colour the sky has beside tiles that are near it (RaySource::SetSkyBeside).
+  void GiveSky(RaySource& source) const;
   // Whether the photo's surfaces may be at a ball around a place that its image shows: neither nearer nor farther than the range there, nor
   // before the sky. True for photos that were not given.
   bool MayShow(int photo, const Eigen::Vector3d& x_in_enu, double radius_m) const;

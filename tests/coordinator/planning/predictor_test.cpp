@@ -56,7 +56,7 @@ RC_GTEST_PROP(PredictorProperty, AFasterMachineIsNeverSlower, ()) {
   Rates slow = Rates::Usual(2);
   Rates fast = slow;
   for (double Rates::*rate : {&Rates::decoded_pixels, &Rates::feature_pixels, &Rates::matched_pairs, &Rates::samples, &Rates::rays,
-                              &Rates::scored_pixels, &Rates::painted_cells}) {
+                              &Rates::scored_pixels, &Rates::painted_pixels, &Rates::fused_pixels, &Rates::texels}) {
     fast.*rate *= 0.1 * *rc::gen::inRange(10, 50);
   }
   for (const char* stage : kAll) RC_ASSERT(Predictor(Flight(photos), fast).Seconds(stage, {}) <= Predictor(Flight(photos), slow).Seconds(stage, {}));
@@ -94,7 +94,7 @@ TEST(Predictor, LearnsFromWhatStagesTook) {
   Predictor predictor(Flight(100), Rates::Usual(2));
   const Settings settings;
   const double surface_s = predictor.Seconds("surface", settings), prepare_s = predictor.Seconds("prepare", settings);
-  predictor.Correct("products", 100.0, 200.0);
+  predictor.Correct("evaluate", 100.0, 200.0);
   EXPECT_NEAR(predictor.Seconds("surface", settings) / surface_s, std::pow(2.0, 0.7), 1e-9);
   EXPECT_NEAR(predictor.Seconds("prepare", settings) / prepare_s, std::pow(2.0, 0.3), 1e-9);
   for (int i = 0; i < 20; ++i) predictor.Correct("products", 1.0, 1000.0);

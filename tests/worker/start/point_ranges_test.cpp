@@ -82,6 +82,7 @@ class PointRangesTest : public ::testing::Test {
   brightness::Response response_ = brightness::Response::Neutral(2, 1);
   std::unique_ptr<RaySource> source_;
   PointRanges ranges_;
+  bool sky_given_ = false;
 };
 
 constexpr std::array<uint8_t, 3> kBlue = {150, 180, 230}, kLamplight = {230, 215, 190};
@@ -117,6 +118,29 @@ TEST_F(PointRangesTest, SkyIsBrightAndNotReddishAboveAllPoints) {
   EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 16.5)).Sky()) << "a ceiling";
   Photograph(kBlue, LevelPhoto, true);
   EXPECT_FALSE(ranges_.Of(TileOf(0.0, kWall, 16.5)).Sky()) << "there are points above it, so it is a wall";
+}
+
+TEST_F(PointRangesTest, PixelsOfTheSkyBesideTheWallHaveEmptyRays) {
+  Photograph(kBlue);
+  const Tile mixed = TileOf(0.0, kWall, 10.0);  // its upper pixels show the sky, its lower ones the wall
+  source_->SetTiles({mixed}, {}, 0.0);
+  base::Random random(1);
+  const auto draw = [&](int* sky, int* wall) {
+    for (int i = 0; i < 50; ++i) {
+      PixelRay ray;
+      ASSERT_TRUE(source_->Draw(random, PhotoPyramid(), &ray));
+      const bool blue = ray.target_srgb[2] > 0.8F;
+      ++(blue ? *sky : *wall);
+      EXPECT_EQ(ray.empty, blue && sky_given_);
+    }
+  };
+  int sky = 0, wall = 0;
+  draw(&sky, &wall);
+  sky_given_ = true;
+  ranges_.GiveSky(*source_);
+  draw(&sky, &wall);
+  EXPECT_GT(sky, 20);
+  EXPECT_GT(wall, 20);
 }
 
 TEST_F(PointRangesTest, NothingIsNextToACamera) {

@@ -15,9 +15,9 @@
 namespace skyquilt::app {
 namespace {
 
-// The flight of `bench scale` with 5,236 photos, by a usual drone: gimbal angles are off by a degree, positions by a metre and a half.
+// 5,544 photos with the usual overlap, by a usual drone: gimbal angles are off by a degree, positions by a metre and a half.
 const std::vector<config::Override> kWideFlight = {
-    {"simulate.place", "smallcity"},  {"simulate.altitudes", "100"},   {"simulate.forward_overlap", "0.9"},      {"simulate.side_overlap", "0.84"},
+    {"simulate.place", "smallcity"},  {"simulate.altitudes", "50"},    {"simulate.forward_overlap", "0.8"},      {"simulate.side_overlap", "0.7"},
     {"simulate.image_width", "1600"}, {"simulate.gps_noise_m", "1.5"}, {"simulate.gimbal_random_error_deg", "1"}};
 // --quick
 const std::vector<config::Override> kShortFlight = {
@@ -48,6 +48,10 @@ void AddSeedingBench(CLI::App& bench, CommandState& state) {
       ->check(CLI::Range(0.0, 10.0))
       ->type_name("PX")
       ->capture_default_str();
+  command->add_option("--seen", o.errors.seen_share, "of the photos that show a point, the share that has a feature there")
+      ->check(CLI::Range(0.01, 1.0))
+      ->type_name("SHARE")
+      ->capture_default_str();
   command->add_option("--wrong", o.errors.wrong_share, "share of the matches that are wrong")
       ->check(CLI::Range(0.0, 0.5))
       ->type_name("SHARE")
@@ -70,7 +74,6 @@ void AddSeedingBench(CLI::App& bench, CommandState& state) {
       bench::SeedingOptions options = flags->options;
       options.simulate = state.LoadOver(own).simulate;
       if (flags->quick && photos->empty()) options.photos = {12, 24};
-      if (flags->quick) options.errors.seen_share = 0.5;  // few photos show a point
       base::RequireWritableFolder(flags->out);
       options.on_row = [&](const bench::SeedingResult& result) {
         bench::WriteBench(flags->out, bench::SeedingPage(result, state.command_line), bench::SeedingJson(result, state.command_line));

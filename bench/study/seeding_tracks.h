@@ -17,7 +17,7 @@ namespace skyquilt::bench {
 
 struct TrackErrors {
   double noise_px = 0.4;      // standard deviation per axis
-  double seen_share = 0.15;   // of the photos that show a point, so many have a feature there
+  double seen_share = 0.5;    // of the photos that show a point, so many have a feature there
   double wrong_share = 0.02;  // of the matches: to any feature of the other photo
   double focal_share = 0.02;  // the focal length to begin with is too long by this
   uint64_t seed = 1;

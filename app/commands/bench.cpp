@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <filesystem>
 #include <iostream>
 #include <string>
 
@@ -7,6 +8,7 @@
 #include "app/commands/command.h"
 #include "bench/bench_page.h"
 #include "bench/kernel_bench.h"
+#include "bench/rank_shares.h"
 #include "bench/schedule_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -65,10 +67,21 @@ void AddKernelBench(CLI::App& bench, CommandState& state) {
   });
 }
 
+// `bench schedule --stages`
+void ShowRankShares(const std::string& project, const bench::RankShareOptions& options, const std::string& out, bool as_json,
+                    const CommandState& state) {
+  const bench::RankShares shares = bench::ShareAmongRanks(bench::ReadMeasuredRun(std::filesystem::absolute(project)), options);
+  const bench::BenchPage page = bench::RankSharesPage(shares, state.command_line);
+  const std::string json = bench::RankSharesJson(shares, state.command_line);
+  std::cout << (as_json ? json : bench::BenchText(page));
+  if (!out.empty()) bench::WriteBench(out, page, json);
+}
+
 void AddScheduleBench(CLI::App& bench, CommandState& state) {
   struct Flags {
     bench::ScheduleBenchOptions options;
-    std::string out, measured;
+    bench::RankShareOptions shares;
+    std::string out, measured, stages;
     bool quick = false;
     bool json = false;
   };
@@ -81,6 +94,12 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
       command->add_option("--ranks", o.ranks, "ranks, including rank 0, which only hands out blocks")->type_name("N")->capture_default_str();
   command->add_option("--block-seconds", o.block_seconds, "mean training time of a block on one rank")->type_name("S")->capture_default_str();
   command->add_option("--measured", flags->measured, "train.json of a project, whose block times are used")->type_name("FILE");
+  command->add_option("--stages", flags->stages, "a finished project: instead, how much of the time rank 0 would work alone with several ranks")
+      ->type_name("DIR");
+  command->add_option("--rank-counts", flags->shares.ranks, "with --stages: numbers of ranks; default: 1,2,4,16,64")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1'000'000))
+      ->type_name("N,...");
   command->add_option("--cost-spread", o.cost_spread, "standard deviation of log(block time), without --measured")
       ->type_name("X")
       ->capture_default_str();
@@ -107,7 +126,9 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
       "  skyquilt bench schedule\n"
       "  skyquilt bench schedule --quick -o out/bench\n"
       "  skyquilt bench schedule --blocks 400 --ranks 64 --block-seconds 1800 --measured out/train.json\n"
-      "Simulates the job twice: undisturbed, and with lost ranks, after which the job starts again from its checkpoints.");
+      "  skyquilt bench schedule --stages out --blocks 400\n"
+      "Simulates the job twice: undisturbed, and with lost ranks, after which the job starts again from its checkpoints. With --stages, --blocks is\n"
+      "that of a larger survey of the same kind; default: the project's own.");
   command->callback([&state, flags, blocks, ranks] {
     state.run_command = [&state, flags, blocks, ranks] {
       if (state.comm != nullptr && state.comm->rank() != 0) return;
@@ -115,6 +136,14 @@ void AddScheduleBench(CLI::App& bench, CommandState& state) {
       if (flags->quick && ranks->empty()) flags->options.ranks = kQuickRanks;
       if (!flags->measured.empty()) flags->options.measured_seconds = bench::MeasuredBlockSeconds(flags->measured);
       if (!flags->out.empty()) base::RequireWritableFolder(flags->out);
+      if (!flags->stages.empty()) {
+        if (!blocks->empty()) flags->shares.blocks = flags->options.blocks;
+        flags->shares.cost_error = flags->options.cost_error;
+        flags->shares.speed_spread = flags->options.speed_spread;
+        flags->shares.seed = flags->options.seed;
+        ShowRankShares(flags->stages, flags->shares, flags->out, flags->json, state);
+        return;
+      }
       const bench::ScheduleBenchResult result = bench::RunScheduleBench(flags->options);
       const std::string json = bench::ScheduleBenchJson(result);
       std::cout << (flags->json ? json : bench::ScheduleBenchTable(result));
@@ -144,6 +173,7 @@ void AddBench(CLI::App& app, CommandState& state) {
   AddStudyBenches(*bench, state);
   AddStabilityBench(*bench, state);
   AddScaleBench(*bench, state);
+  AddSeedingBench(*bench, state);
 }
 
 }  // namespace skyquilt::app

@@ -11,6 +11,7 @@ int BenchThreads(const CommandState& state);
 void AddNumericsBench(CLI::App& bench, CommandState& state);
 void AddPosesBench(CLI::App& bench, CommandState& state);
 void AddScaleBench(CLI::App& bench, CommandState& state);
+void AddSeedingBench(CLI::App& bench, CommandState& state);
 void AddStabilityBench(CLI::App& bench, CommandState& state);
 
 }  // namespace skyquilt::app

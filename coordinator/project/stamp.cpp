@@ -37,6 +37,7 @@ std::optional<StageStamp> LoadStamp(const Project& project, const std::string& s
     stamp.inputs = json.at("inputs").get<FlatOptions>();
     stamp.finished_utc = json.value("finished_utc", "");
     stamp.seconds = json.value("seconds", 0.0);
+    stamp.rendering_seconds = json.value("rendering_seconds", 0.0);
     return stamp;
   } catch (const nlohmann::json::exception& error) {
     throw base::InputError(file, std::string("is damaged: ") + error.what(), "Run '" + stage + "' again with --restart");
@@ -45,9 +46,10 @@ std::optional<StageStamp> LoadStamp(const Project& project, const std::string& s
 
 void SaveStamp(const Project& project, const StageStamp& stamp) {
   std::filesystem::create_directories(project.StateFolder());
-  const nlohmann::json json = {{"stage", stamp.stage},    {"state", stamp.state}, {"options", stamp.options},
-                               {"inputs", stamp.inputs},  {"hash", stamp.Hash()}, {"finished_utc", stamp.finished_utc},
-                               {"seconds", stamp.seconds}};
+  const nlohmann::json json = {{"stage", stamp.stage},     {"state", stamp.state},
+                               {"options", stamp.options}, {"inputs", stamp.inputs},
+                               {"hash", stamp.Hash()},     {"finished_utc", stamp.finished_utc},
+                               {"seconds", stamp.seconds}, {"rendering_seconds", stamp.rendering_seconds}};
   base::WriteFileAtomically(project.StampFile(stamp.stage), base::JsonText(json, 2) + "\n");
 }
 

@@ -24,6 +24,7 @@ struct StageStamp {
   FlatOptions inputs;   // name = hash or description of each input
   std::string finished_utc = {};
   double seconds = 0.0;
+  double rendering_seconds = 0.0;  // of these, for rays of the scene
 
   // Identity of stage, options and inputs; date and duration do not count.
   std::string Hash() const;

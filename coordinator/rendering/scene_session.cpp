@@ -6,8 +6,9 @@
 
 namespace skyquilt::coordinator {
 
-SceneSession::SceneSession(comm::Communicator& comm, const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet)
-    : threads_(options.threads) {
+SceneSession::SceneSession(comm::Communicator& comm, const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet,
+                           double* rendering_s)
+    : rendering_s_(rendering_s), threads_(options.threads) {
   if (comm.size() > 1) remote_ = std::make_unique<RemoteRenderer>(comm, RenderingSetup(scene_h5, options, verbose, quiet));
   scene_ = std::make_unique<scene::Scene>(scene::Scene::Load(scene_h5, {.memory_bytes = options.MemoryLimitBytes(), .service = remote_.get()}));
 }
@@ -16,6 +17,7 @@ SceneSession::~SceneSession() {
   const auto count = [](int64_t n) { return base::FormatCount(static_cast<double>(n)); };
   const int64_t fields = static_cast<int64_t>(scene_->info().blocks.size()) + 1;
   const scene::RenderStatistics s = scene_->statistics();
+  if (rendering_s_ != nullptr) *rendering_s_ += s.seconds;
   if (remote_ == nullptr) {
     if (s.field_loads > fields) {
       base::LogInfo("fields were loaded from disk {} times, because they do not all fit in memory. Raise --memory to render faster", s.field_loads);

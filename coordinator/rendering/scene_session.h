@@ -14,8 +14,9 @@ namespace skyquilt::coordinator {
 
 class SceneSession {
  public:
-  // Throws base::InputError, base::UsageError.
-  SceneSession(comm::Communicator& comm, const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet);
+  // rendering_s: the seconds that rendering took are added to it at the end; null: they are not asked for. Throws base::InputError, base::UsageError.
+  SceneSession(comm::Communicator& comm, const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet,
+               double* rendering_s = nullptr);
   // Logs traffic between ranks and repeated loading of fields. Speed (rays per second) is logged by the caller.
   ~SceneSession();
   SceneSession(const SceneSession&) = delete;
@@ -25,6 +26,7 @@ class SceneSession {
   base::ThreadPool& threads() { return threads_; }
 
  private:
+  double* rendering_s_;
   base::ThreadPool threads_;
   std::unique_ptr<RemoteRenderer> remote_;
   std::unique_ptr<scene::Scene> scene_;

@@ -72,7 +72,7 @@ void LogBuildings(const BuildingSet& set, bool georeferenced, const std::filesys
 std::string BuildingsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const Project& project = pipeline.project;
   const Settings& settings = pipeline.settings;
-  SceneSession session(pipeline.comm, project.SceneFile(), settings.run, pipeline.verbose, pipeline.quiet);
+  SceneSession session(pipeline.comm, project.SceneFile(), settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   const scene::SceneInfo& info = session.scene().info();
   const surface::MapFrame frame(info, geo::VerticalNamed(settings.products.vertical));
   buildings::BuildingsInput input;
@@ -117,7 +117,7 @@ void WriteFacades(Pipeline& pipeline, const std::vector<int>& ids) {
                              std::to_string(set.buildings.size()) + ", see " + (project.BuildingsFolder() / "buildings.csv").string());
     }
   }
-  SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+  SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   const scene::SceneInfo& info = session.scene().info();
   const surface::MapFrame map(info, geo::VerticalNamed(pipeline.settings.products.vertical));
   const buildings::FileFrame frame(set, map);

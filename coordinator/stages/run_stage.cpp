@@ -84,10 +84,12 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
   SaveStamp(project, stamp);
   if (stage.dated) base::WriteFileAtomically(project.ConfigFile(), pipeline.settings.Toml());
   base::LogInfo("{} started", name);
+  pipeline.rendering_s = 0.0;
   const auto start = std::chrono::steady_clock::now();
   stamp.state = stage.body(pipeline, stamp);
   if (stage.dated) {
     stamp.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    stamp.rendering_seconds = pipeline.rendering_s;
     stamp.finished_utc = base::UtcTimestamp();
   }
   SaveStamp(project, stamp);

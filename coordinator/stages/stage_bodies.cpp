@@ -148,7 +148,7 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const bool from_photos = options.ortho && options.ortho_source == "photos";
   if (kinds.elevations || along_cameras || from_photos) survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
   const std::filesystem::path folder = pipeline.project.ProductsFolder();
-  SceneSession session(pipeline.comm, pipeline.project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+  SceneSession session(pipeline.comm, pipeline.project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   const scene::Scene& scene = session.scene();
   base::ThreadPool& threads = session.threads();
   std::filesystem::create_directories(folder);
@@ -177,7 +177,7 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 
 std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp) {
   const Project& project = pipeline.project;
-  SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+  SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   base::ThreadPool& threads = session.threads();
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
   const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());

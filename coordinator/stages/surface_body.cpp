@@ -19,7 +19,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   // Half of the limit is for the fields.
   RunOptions run = settings.run;
   run.memory_gb = 0.5 * settings.run.MemoryLimitBytes() / 1073741824.0;
-  SceneSession session(pipeline.comm, project.SceneFile(), run, pipeline.verbose, pipeline.quiet);
+  SceneSession session(pipeline.comm, project.SceneFile(), run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   const scene::Scene& scene = session.scene();
   const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
   const gis::MapGrid grid = products::PlanHeightGrid(scene.info(), settings.products);

@@ -102,7 +102,7 @@ void Export(Pipeline& pipeline, const TourRequest& request) {
   const Project& project = pipeline.project;
   const Settings& settings = pipeline.settings;
   SKYQUILT_CHECK(pipeline.tour_parts != nullptr, "nobody has the page of tours");
-  SceneSession session(pipeline.comm, project.SceneFile(), settings.run, pipeline.verbose, pipeline.quiet);
+  SceneSession session(pipeline.comm, project.SceneFile(), settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   const tour::ExportParts parts = pipeline.tour_parts(project);
   ProvideTour(project, session.scene().info(), parts, request.auto_stops);
   const tour::PictureField field = tour::FieldOf(session.scene(), project.SceneFile(), session.threads());

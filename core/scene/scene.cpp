@@ -1,6 +1,7 @@
 #include "core/scene/scene.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "core/base/errors.h"
@@ -66,6 +67,7 @@ struct Scene::Impl {
   }
 
   void Answer(std::span<const render::Ray> rays, std::span<render::RayColor> out, const Appearance& appearance, base::ThreadPool& threads) {
+    const auto start = std::chrono::steady_clock::now();
     const render::EngineOptions options = Options(appearance);
     if (service != nullptr) {
       service->Render(rays, out, options);
@@ -81,6 +83,7 @@ struct Scene::Impl {
     }
     if (Conceals(appearance.look)) ShowConcealed(out);
     scale_check.Check(rays, out);
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
   SceneInfo info;
@@ -91,6 +94,7 @@ struct Scene::Impl {
   const base::ThreadPool* pager_threads = nullptr;
   RayService* service = nullptr;
   RenderStatistics statistics;
+  double seconds = 0.0;  // of all calls, here or by the service
   ScaleCheck scale_check{Scales()};
 };
 
@@ -103,9 +107,9 @@ const SceneInfo& Scene::info() const {
 }
 
 RenderStatistics Scene::statistics() const {
-  if (impl_->service != nullptr) return impl_->service->statistics();
-  RenderStatistics statistics = impl_->statistics;
-  statistics.field_loads = impl_->store->loads();
+  RenderStatistics statistics = impl_->service != nullptr ? impl_->service->statistics() : impl_->statistics;
+  if (impl_->service == nullptr) statistics.field_loads = impl_->store->loads();
+  statistics.seconds = impl_->seconds;
   return statistics;
 }
 

@@ -89,6 +89,7 @@ struct RenderStatistics {
   int64_t handovers = 0;       // rays passed on to another rank
   int64_t bytes_sent = 0;      // by the rank that requests rays
   int64_t bytes_received = 0;  // by the same rank
+  double seconds = 0.0;        // that the calls took which rendered them
 };
 
 class RayService;

@@ -72,6 +72,18 @@ def check_scale(skyquilt, out):
     expect(json.loads((out / "scale.json").read_text())["rows"] == result["rows"], "the saved figures have changed")
 
 
+def check_seeding(skyquilt, out):
+    skyquilt.call("bench", "seeding", "--quick", "--photos", "24,24", "-o", out, status=2, says="--photos")
+    skyquilt.call("bench", "seeding", "--quick", "--thread-counts", "1,2", "-o", out, says="every photo has the right pose")
+    rows = json.loads((out / "seeding.json").read_text())["rows"]
+    expect([(row["photos"], row["threads"]) for row in rows] == [(12, 1), (12, 2), (24, 1), (24, 2)], rows)
+    for row in rows:
+        expect(row["right"] == row["photos"] and row["seconds"] > 0.0 and row["peak_bytes"] >= row["input_bytes"] > 1e6, row)
+        expect(0.0 < row["wrong_matches"] < 0.05 * row["matches"], row)
+    expect("Time and memory" in (out / "seeding.html").read_text(), "seeding.html lacks its section")
+    expect([row[0] for row in rows_of(out / "seeding_tracks.csv")] == ["photos", "12", "24"], rows_of(out / "seeding_tracks.csv"))
+
+
 def test(skyquilt, folder):
     out = folder / "bench"
     for isa in ("portable", None):
@@ -100,6 +112,9 @@ def test(skyquilt, folder):
     shares = rows_of(out / "schedule_time.csv")[1:]
     expect(float(shares[0][1]) == result["undisturbed"]["efficiency"] and abs(sum(float(row[2]) for row in shares) - 1.0) < 1e-9, shares)
 
+    # Times of stages that are not there.
+    skyquilt.call("bench", "schedule", "--stages", folder / "nowhere", status=3, says="train.json")
+
     # Extreme numbers: the page has the tables, the files have every row, and temporary surveys are removed.
     text = skyquilt.call("bench", "numerics", "--quick", "--only", "space,nonfinite,brightness,storage", "-o", out)
     expect("Space" in text and "FAILED" not in text, text)
@@ -112,6 +127,7 @@ def test(skyquilt, folder):
     expect(not (out / "work").exists(), "the folder of the cases' surveys is still there")
 
     check_scale(skyquilt, out)
+    check_seeding(skyquilt, out)
 
     if shutil.which("colmap"):
         check_poses(skyquilt, out)

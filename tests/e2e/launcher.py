@@ -94,6 +94,15 @@ def test(skyquilt, folder):
     skyquilt.call("train", project, *QUICK_TRAIN)
     expect(state_of(skyquilt, project) == state_of(skyquilt, whole), "stopped and continued differs from undisturbed")
 
+    # Ranks may take their time to save.
+    saving = (f"trap 'sleep 2.5; touch {folder}/saved.$OMPI_COMM_WORLD_RANK; exit 130' USR1; touch {folder}/begun.$OMPI_COMM_WORLD_RANK; "
+              "while :; do sleep 0.1; done")
+    process, log = start("saving", "-n", "2", "--oversubscribe", "bash", "-c", saving)
+    wait_for(lambda: len(list(folder.glob("begun.*"))) == 2, "first signs of both ranks", process)
+    os.kill(process.pid, signal.SIGTERM)
+    status = process.wait(timeout=60)
+    expect(status == 130 and len(list(folder.glob("saved.*"))) == 2, f"ranks were not left to save, status {status}:\n{log.read_text()}")
+
     # A program that always dies is given up with its own status. A final result is not tried again.
     process, log = start("dies", "-n", "1", "sh", "-c", "kill -9 $$")
     status = process.wait(timeout=120)

@@ -119,7 +119,7 @@ PointPreview MakePointPreview(const survey::Survey& survey, const ProductOptions
   const gis::MapProjection projection(info.origin, grid);
   const HeightGrid surface = SurfaceOf(grid, projection, heights);
   const std::vector<char> usable = ChoosePhotosFor(survey, heights, area, flown.height_m, threads);
-  const std::vector<float> slack_m = SightSlack_m(surface, threads);
+  const std::vector<float> slack_m = SightSlack(surface, threads);
   PhotoMap painter({.survey = survey,
                     .usable = usable,
                     .grid = grid,

@@ -194,7 +194,7 @@ bool HeightGrid::IsVisible(const Eigen::Vector3d& place, const Eigen::Vector3d& 
   }
 }
 
-std::vector<float> SightSlack_m(const HeightGrid& surface, base::ThreadPool& threads) {
+std::vector<float> SightSlack(const HeightGrid& surface, base::ThreadPool& threads) {
   const gis::MapGrid& grid = surface.grid();
   const double least_m = kSlackCells * grid.resolution_m;
   std::vector<float> slack_m(grid.size());

@@ -47,6 +47,6 @@ class HeightGrid {
 // How far cells may rise above the line of sight from each cell of the surface and not hide it, metres, row-major: a little, and more where the
 // surface is rough on all sides, as crowns of trees are, because such heights are not sure. Beside a roof's edge at least one side is plain, so that
 // nothing of the roof is let through. The same for any number of threads.
-std::vector<float> SightSlack_m(const HeightGrid& surface, base::ThreadPool& threads);
+std::vector<float> SightSlack(const HeightGrid& surface, base::ThreadPool& threads);
 
 }  // namespace skyquilt::products

@@ -23,7 +23,7 @@ struct PhotoMapInput {
   const gis::MapGrid& grid;      // of the map
   const gis::MapProjection& projection;
   const HeightGrid& surface;               // heights as of MapProjection
-  std::span<const float> slack_m;          // SightSlack_m of the surface
+  std::span<const float> slack_m;          // SightSlack of the surface
   std::span<const uint8_t> field_rgba;     // the field's colours on the surface's grid, display values; empty: not known
   double ground_z = 0.0;                   // ENU, of most of the ground
   double flown_height_m = 0.0;             // of most photos, above the ground

@@ -143,7 +143,7 @@ void WriteSources(const survey::Survey& survey, const PhotoOrthophoto& made, con
 
 }  // namespace
 
-double PhotoResolution_m(const survey::Survey& survey, double ground_z) {
+double PhotoResolution(const survey::Survey& survey, double ground_z) {
   std::vector<double> gsd_m;
   for (const survey::Photo& photo : survey.photos) {
     const double height_m = photo.cam_from_enu.OriginInSource().z() - ground_z;
@@ -157,7 +157,7 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
                                                     const std::filesystem::path& folder, base::ThreadPool& threads) {
   const std::vector<double> ground = GroundHeights(info, field);
   const double ground_z = ground.empty() ? std::numeric_limits<double>::quiet_NaN() : base::Median(ground);
-  const double photo_resolution_m = PhotoResolution_m(survey, ground_z);
+  const double photo_resolution_m = PhotoResolution(survey, ground_z);
   if (!std::isfinite(photo_resolution_m)) {
     base::LogWarning("no photo looks down on the ground, so the orthophoto is drawn from the trained scene");
     return std::nullopt;
@@ -176,7 +176,7 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   std::vector<float> heights = WithSharpSteps(field, threads);
   FillHoles(field.grid, &heights, threads);
   const HeightGrid surface(field.grid, std::move(heights));
-  const std::vector<float> slack_m = SightSlack_m(surface, threads);
+  const std::vector<float> slack_m = SightSlack(surface, threads);
   const PhotoMapInput input{.survey = survey,
                             .usable = usable,
                             .grid = grid,

@@ -35,7 +35,7 @@ struct PhotoOrthophoto {
 
 // Cells of an orthophoto from these photos: their median ground sampling distance, rounded to 1, 2 or 5 times a power of ten; NaN when none looks
 // down on the ground.
-double PhotoResolution_m(const survey::Survey& survey, double ground_z);
+double PhotoResolution(const survey::Survey& survey, double ground_z);
 
 // Held-out photos are not used. memory: bytes that the photos in memory may take. Nothing when no photo sees the ground or can be read, with a
 // warning that says why; then no file is written. boundary limits the map further. The same bytes for any number of threads. Files are complete or

@@ -201,7 +201,7 @@ TEST(SightSlack, IsLargeInRoughCrownsAndSmallOnBothSidesOfARoofsEdge) {
     return column >= 15 && column < 35 && row >= 15 && row < 45 ? ground + 8.0 : ground;
   });
   base::ThreadPool threads(2);
-  const std::vector<float> slack_m = SightSlack_m(heights, threads);
+  const std::vector<float> slack_m = SightSlack(heights, threads);
   ASSERT_EQ(slack_m.size(), grid.size());
   for (int row = 0; row < grid.height; ++row) {
     for (int column = 0; column < grid.width; ++column) {

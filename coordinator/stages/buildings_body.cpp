@@ -29,6 +29,7 @@ std::vector<buildings::GivenOutline> ReadFootprints(const std::string& file, con
     outline.id = read.id;
     const auto in_enu = [&frame](const std::vector<Eigen::Vector2d>& ring) {
       std::vector<Eigen::Vector2d> moved;
+      moved.reserve(ring.size());
       // Heights hardly change the place on the ground.
       for (const Eigen::Vector2d& point : ring) moved.push_back(frame.EnuFromMap({point.x(), point.y(), frame.origin().height_m}).head<2>());
       return moved;

@@ -28,7 +28,7 @@ double RoughnessOfSide(const HeightGrid& surface, int column, int row, int strid
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 3; ++x) {
       const auto height = static_cast<double>(surface.HeightOf(column + x * stride_x, row + y * stride_y));
-      heights[static_cast<size_t>(3 * y + x)] = height;
+      heights[3 * static_cast<size_t>(y) + static_cast<size_t>(x)] = height;
       mean += height / 9.0;
       slope_x += (x - 1) * height / 6.0;
       slope_y += (y - 1) * height / 6.0;
@@ -37,7 +37,7 @@ double RoughnessOfSide(const HeightGrid& surface, int column, int row, int strid
   double squares = 0.0;
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 3; ++x) {
-      const double off = heights[static_cast<size_t>(3 * y + x)] - mean - (x - 1) * slope_x - (y - 1) * slope_y;
+      const double off = heights[3 * static_cast<size_t>(y) + static_cast<size_t>(x)] - mean - (x - 1) * slope_x - (y - 1) * slope_y;
       squares += off * off;
     }
   }

@@ -63,10 +63,9 @@ BenchPage RankSharesPage(const RankShares& shares, const std::string& command) {
   page.name = "schedule";
   page.title = "What rank 0 does alone";
   page.lead = fmt::format(
-      "From the times of the stages of a run of one process with {} blocks, for a survey with {} blocks of the same kind. Every rank is taken to be "
-      "as "
-      "fast as that process. Blocks are handed out by the real scheduler on a simulated clock, rays are divided evenly, and all else is done by rank "
-      "0.",
+      "From the times of the stages of a run of one process with {} blocks, for a survey with {} blocks of the same kind. Every rank is taken to "
+      "be as fast as that process. Blocks are handed out by the real scheduler on a simulated clock, rays are divided evenly, and all else is "
+      "done by rank 0.",
       shares.measured_blocks, shares.run.block_seconds.size());
   page.command = command;
   page.machine = base::MachineDescription();

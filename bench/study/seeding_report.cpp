@@ -110,9 +110,8 @@ BenchPage SeedingPage(const SeedingResult& result, const std::string& command) {
   page.name = "seeding";
   page.title = "Poses by tags and matches, by number of photos";
   page.lead = fmt::format(
-      "Flights over '{}' of growing area. Features are the projections of true points with {:.1f} pixels of noise per axis, {:.1f} % of the matches "
-      "are "
-      "wrong, and the focal length to begin with is off by {:.1f} %. No picture is rendered and no feature is sought.",
+      "Flights over '{}' of growing area. Features are the projections of true points with {:.1f} pixels of noise per axis, {:.1f} % of the "
+      "matches are wrong, and the focal length to begin with is off by {:.1f} %. No picture is rendered and no feature is sought.",
       result.place, result.errors.noise_px, 100.0 * result.errors.wrong_share, 100.0 * result.errors.focal_share);
   page.command = command;
   page.machine = base::MachineDescription();

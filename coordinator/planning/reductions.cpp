@@ -59,9 +59,12 @@ class ReductionList {
     if (size_.level || !(size_.gsd_m > 0.0) || !(settings_.products.ortho || settings_.products.dsm)) return;
     const int width = settings_.run.image_width;
     const double full = width > 0 && width < size_.photo_width ? static_cast<double>(width) / size_.photo_width : 1.0;
-    for (const double factor : {1.5 * full, 2.0 * full, 1.0, 2.0, 3.0}) {
-      const bool below = factor == 1.5 * full || factor == 2.0 * full;  // the detail of training
-      if (below && (factor >= 1.0 || settings_.products.ortho_source != "photos")) continue;
+    std::vector<double> factors;
+    for (const double pixels : {1.5, 2.0}) {
+      if (settings_.products.ortho_source == "photos" && pixels * full < 1.0) factors.push_back(pixels * full);
+    }
+    factors.insert(factors.end(), {1.0, 2.0, 3.0});
+    for (const double factor : factors) {
       const std::string cell = fmt::format("{:.3g}", factor * size_.gsd_m);
       if (settings_.products.resolution_m >= std::stod(cell)) continue;
       Add("maps", "products", fmt::format("maps with cells of {} m (products.resolution_m)", cell), {{"products.resolution_m", cell}});

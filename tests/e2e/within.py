@@ -66,8 +66,8 @@ def test(skyquilt, folder):
 
     # Too short: what is not made is named, and the rest is made. Two photos are scored, though there is no time left.
     short = folder / "short"
-    text = skyquilt.call("run", survey, "-o", short, "--within", "4s", *QUICK, "--set", "evaluate.max_photos=3", says="for 4.0s in all: ")
-    plan = check_finished(short, 4)
+    text = skyquilt.call("run", survey, "-o", short, "--within", "2s", *QUICK, "--set", "evaluate.max_photos=3", says="for 2.0s in all: ")
+    plan = check_finished(short, 2)
     expect("2 of 3 held-out photos are scored" in plan["given_up"], f"given up: {plan['given_up']}")
 
     # A run that was killed goes on with its decisions, and its time counts.

@@ -178,6 +178,27 @@ TEST(Reductions, AreAllowedValuesAndNameTheStageWhoseOptionsTheyChange) {
   }
 }
 
+TEST(Reductions, MapsGetCoarserStepByStep) {
+  const auto cells_at = [](int photo_width, int image_width, const std::string& source) {
+    WorkSize size = InventedSize(200);
+    size.photo_width = photo_width;
+    size.gsd_m = 0.1;
+    Settings settings;
+    settings.run.image_width = image_width;
+    settings.products.ortho_source = source;
+    std::vector<std::string> cells;
+    for (const Reduction& reduction : ReductionsOf(settings, size)) {
+      if (reduction.what == "maps") cells.push_back(reduction.changes.front().value);
+    }
+    return cells;
+  };
+  using Cells = std::vector<std::string>;
+  EXPECT_EQ(cells_at(4000, 1000, "photos"), (Cells{"0.0375", "0.05", "0.1", "0.2", "0.3"}));
+  EXPECT_EQ(cells_at(2000, 1000, "photos"), (Cells{"0.075", "0.1", "0.2", "0.3"}));
+  EXPECT_EQ(cells_at(1000, 0, "photos"), (Cells{"0.1", "0.2", "0.3"}));
+  EXPECT_EQ(cells_at(4000, 1000, "field"), (Cells{"0.1", "0.2", "0.3"}));
+}
+
 TEST(Reductions, OfferNothingThatIsNotMade) {
   WorkSize size = InventedSize(4);
   size.poses_given = true;

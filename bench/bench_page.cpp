@@ -8,6 +8,7 @@
 #include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/system.h"
 #include "core/page/html.h"
 #include "core/page/page_frame.h"
 
@@ -116,6 +117,12 @@ BenchCell BenchCell::Bytes(double bytes) {
 
 BenchCell BenchCell::Seconds(double seconds) {
   return {std::isfinite(seconds) ? base::FormatDuration(seconds) : page::FormatFixed(seconds, 0), seconds};
+}
+
+void BenchPage::SetOrigin(const std::string& command_line) {
+  command = command_line;
+  machine = base::MachineDescription();
+  date = base::UtcTimestamp();
 }
 
 std::string BenchText(const BenchPage& page) {

@@ -61,6 +61,9 @@ struct BenchPage {
   std::string command;  // command line that made the page
   std::string machine;
   std::string date;  // UTC
+
+  // The three above: this command, this machine, now.
+  void SetOrigin(const std::string& command_line);
 };
 
 // For the terminal: figures, tables and verdicts.

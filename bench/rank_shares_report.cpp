@@ -67,9 +67,7 @@ BenchPage RankSharesPage(const RankShares& shares, const std::string& command) {
       "be as fast as that process. Blocks are handed out by the real scheduler on a simulated clock, rays are divided evenly, and all else is "
       "done by rank 0.",
       shares.measured_blocks, shares.run.block_seconds.size());
-  page.command = command;
-  page.machine = base::MachineDescription();
-  page.date = base::UtcTimestamp();
+  page.SetOrigin(command);
   if (const std::string verdict = ShareVerdict(shares); !verdict.empty()) page.verdicts.push_back(verdict);
   page::Curve share{.name = "share of rank 0", .points = {}, .marks = true};
   for (const RankShareRow& row : shares.rows) share.points.emplace_back(row.ranks, 100.0 * row.Share());

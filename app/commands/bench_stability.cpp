@@ -7,7 +7,6 @@
 #include "bench/study/stability_bench.h"
 #include "bench/study/study_tables.h"
 #include "core/base/errors.h"
-#include "core/base/system.h"
 
 namespace skyquilt::app {
 namespace {
@@ -75,9 +74,7 @@ void RunStability(const CommandState& state, StabilityFlags flags) {
     }
   }
   bench::BenchPage page = bench::StabilityPage(runs);
-  page.machine = base::MachineDescription();
-  page.date = base::UtcTimestamp();
-  page.command = state.command_line;
+  page.SetOrigin(state.command_line);
   const std::string json = bench::StudyJson(page, results, settings.Toml());
   bench::WriteBench(flags.out, page, json);
   std::cout << (flags.json ? json : bench::BenchText(page));

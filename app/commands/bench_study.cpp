@@ -9,7 +9,6 @@
 #include "bench/study/study_benches.h"
 #include "bench/study/study_tables.h"
 #include "core/base/errors.h"
-#include "core/base/system.h"
 
 namespace skyquilt::app {
 namespace {
@@ -77,9 +76,7 @@ bench::Study Begin(const CommandState& state, const StudyFlags& flags, const Stu
 
 void WriteResults(bench::StudyBench bench, const bench::Study& study, const CommandState& state, const StudyFlags& flags) {
   bench::BenchPage& page = bench.page;
-  page.machine = base::MachineDescription();
-  page.date = base::UtcTimestamp();
-  page.command = state.command_line;
+  page.SetOrigin(state.command_line);
   const std::string json = bench::StudyJson(page, bench.results, study.settings().Toml());
   bench::WriteBench(flags.out, page, json);
   std::cout << (flags.json ? json : bench::BenchText(page));

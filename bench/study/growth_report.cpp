@@ -126,9 +126,7 @@ BenchPage GrowthPage(const GrowthResult& result, const std::string& command) {
       "Surveys of one place, height and overlap, of growing area, from photos to report with given poses. Training has a fixed time, so its time "
       "says "
       "nothing. Memory is the peak of rank 0 during the stage.";
-  page.command = command;
-  page.machine = base::MachineDescription();
-  page.date = base::UtcTimestamp();
+  page.SetOrigin(command);
   if (result.rows.empty()) return page;
   const std::vector<std::string> names = StageNames(result);
   const GrowthRow& last = result.rows.back();

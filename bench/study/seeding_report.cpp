@@ -113,9 +113,7 @@ BenchPage SeedingPage(const SeedingResult& result, const std::string& command) {
       "Flights over '{}' of growing area. Features are the projections of true points with {:.1f} pixels of noise per axis, {:.1f} % of the "
       "matches are wrong, and the focal length to begin with is off by {:.1f} %. No picture is rendered and no feature is sought.",
       result.place, result.errors.noise_px, 100.0 * result.errors.wrong_share, 100.0 * result.errors.focal_share);
-  page.command = command;
-  page.machine = base::MachineDescription();
-  page.date = base::UtcTimestamp();
+  page.SetOrigin(command);
   if (result.rows.empty()) return page;
   page.verdicts.push_back(RightVerdict(result));
   if (result.rows.front().photos != result.rows.back().photos) page.verdicts.push_back(GrowthVerdict(result));

@@ -93,7 +93,7 @@ double Predictor::ProductsSeconds(const Settings& settings) const {
     const bool from_photos = options.ortho && options.ortho_source == "photos";
     const double detail = size_.SurfacePixelsAt(width);  // cells of the scene's own detail
     // Cells of the resolution that is asked for, where the scene's own is known.
-    const double asked = options.resolution_m > 0.0 && size_.gsd_m > 0.0 ? detail * Squared(size_.gsd_m / options.resolution_m) : 0.0;
+    const double asked = options.resolution_m > 0.0 ? detail * Squared(size_.GsdAt(width) / options.resolution_m) : 0.0;
     double cells = from_photos && 4.0 * detail <= kMostFineMapCells ? 4.0 * detail : std::min(detail, products::kMostRenderedCells);
     if (asked > 0.0) cells = from_photos ? std::min(cells, asked) : asked;
     seconds += RaySeconds(cells / kMapRays);

@@ -20,10 +20,11 @@ class ReductionList {
     if (settings_.surface.enabled && settings_.surface.virtual_views) {
       Add("gap views", "surface", "no virtual views of what photos leave out (surface.virtual_views)", {{"surface.virtual_views", "false"}});
     }
-    AddMaps();
+    AddMaps(FineCells());
     AddSurfaceDetail(2.5, 3.0, 2.0);
     if (settings_.tour.auto_stops > 0) Add("tour", "tour", "no tour (tour.auto)", {{"tour.auto", "0"}});
     for (const int width : {1000, 800, 640}) AddWidth(width);
+    AddMaps({2.0, 3.0});
     if (settings_.products.preview) {
       Add("previews", "train", "no picture of the context before the orthophoto (products.preview)", {{"products.preview", "false"}});
     }
@@ -54,18 +55,22 @@ class ReductionList {
     if (seconds > 0.0) Add("video", "products", "no video (products.video_seconds)", {{"products.video_seconds", "0"}});
   }
 
-  // Cells of 1.5 and 2 pixels of the full photos, then of 1, 2 and 3 at the training width. Their size is known when there are blocks.
-  void AddMaps() {
-    if (size_.level || !(size_.gsd_m > 0.0) || !(settings_.products.ortho || settings_.products.dsm)) return;
-    const int width = settings_.run.image_width;
-    const double full = width > 0 && width < size_.photo_width ? static_cast<double>(width) / size_.photo_width : 1.0;
-    std::vector<double> factors;
+  // Cells of 1.5 and 2 pixels of the full photos, where these are finer than those of the scene, then one pixel at the training width.
+  std::vector<double> FineCells() const {
+    std::vector<double> cells;
+    const double full = size_.GsdAt(0) / std::max(1e-9, size_.GsdAt(settings_.run.image_width));
     for (const double pixels : {1.5, 2.0}) {
-      if (settings_.products.ortho_source == "photos" && pixels * full < 1.0) factors.push_back(pixels * full);
+      if (settings_.products.ortho_source == "photos" && pixels * full < 1.0) cells.push_back(pixels * full);
     }
-    factors.insert(factors.end(), {1.0, 2.0, 3.0});
-    for (const double factor : factors) {
-      const std::string cell = fmt::format("{:.3g}", factor * size_.gsd_m);
+    cells.push_back(1.0);
+    return cells;
+  }
+
+  // Cells of so many pixels at the training width. Their size is known when there is a survey.
+  void AddMaps(const std::vector<double>& cells) {
+    if (size_.level || !(size_.photo_gsd_m > 0.0) || !(settings_.products.ortho || settings_.products.dsm)) return;
+    for (const double pixels : cells) {
+      const std::string cell = fmt::format("{:.3g}", pixels * size_.GsdAt(settings_.run.image_width));
       if (settings_.products.resolution_m >= std::stod(cell)) continue;
       Add("maps", "products", fmt::format("maps with cells of {} m (products.resolution_m)", cell), {{"products.resolution_m", cell}});
     }

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "core/base/order_statistics.h"
 #include "core/survey/exif.h"
 #include "core/survey/view_kind.h"
+#include "partition/capacity.h"
 #include "prepare/holdout.h"
 #include "prepare/input/input_folder.h"
 #include "prepare/input/list_files.h"
@@ -56,6 +61,15 @@ void LookAtTags(const std::filesystem::path& root, const std::vector<std::string
   size->level = directed > 0 && 2 * level > directed;
 }
 
+// 0 where no height above ground is known.
+double PhotoGsd(const survey::Survey& survey) {
+  std::vector<double> heights;
+  for (const survey::Photo& photo : survey.photos) {
+    if (photo.agl_m > 0.0) heights.push_back(photo.agl_m);
+  }
+  return heights.empty() ? 0.0 : partition::SurveyGsd(survey, base::Median(std::move(heights)), 0);
+}
+
 }  // namespace
 
 double WorkSize::PixelsAt(int image_width) const {
@@ -66,6 +80,10 @@ double WorkSize::PixelsAt(int image_width) const {
 
 double WorkSize::SurfacePixelsAt(int image_width) const {
   return photo_pixels > 0.0 ? surface_pixels * PixelsAt(image_width) / photo_pixels : 0.0;
+}
+
+double WorkSize::GsdAt(int image_width) const {
+  return image_width > 0 && image_width < photo_width ? photo_gsd_m * photo_width / image_width : photo_gsd_m;
 }
 
 double WorkSize::Speedup() const {
@@ -113,26 +131,28 @@ void CountSurvey(const survey::Survey& survey, WorkSize* size) {
   size->photo_pixels = pixels / size->photos;
   size->surface_pixels = kNewShareOfPhotos * pixels;
   size->level = survey::LooksLevel(survey);
+  size->photo_gsd_m = size->level ? 0.0 : PhotoGsd(survey);
   size->truth = survey.truth.has_value();
 }
 
 void CountBlocks(const partition::BlockSet& blocks, WorkSize* size) {
   size->blocks = 0;
   size->log2_table_size = 0;
-  size->gsd_m = 0.0;
-  double pixels = 0.0;
+  double pixels = 0.0, finest_m = std::numeric_limits<double>::infinity();
   for (const partition::Block& block : blocks.blocks) {
     if (block.empty) continue;
     ++size->blocks;
     size->log2_table_size = std::max(size->log2_table_size, block.log2_table_size);
     if (!(block.gsd_m > 0.0)) continue;
-    size->gsd_m = size->gsd_m > 0.0 ? std::min(size->gsd_m, block.gsd_m) : block.gsd_m;
+    finest_m = std::min(finest_m, block.gsd_m);
     const Eigen::Vector3d extent = block.max_enu - block.min_enu;
     pixels += extent.x() * extent.y() / (block.gsd_m * block.gsd_m);
   }
   size->blocks = std::max(1, size->blocks);
   // Walls are no part of a block's ground.
   if (size->level || !(pixels > 0.0)) return;
+  const bool reduced = blocks.image_width > 0 && blocks.image_width < size->photo_width;
+  size->photo_gsd_m = reduced ? finest_m * blocks.image_width / size->photo_width : finest_m;
   const double trained = size->PixelsAt(blocks.image_width);
   if (trained > 0.0) size->surface_pixels = pixels * size->photo_pixels / trained;
 }

@@ -18,7 +18,7 @@ struct WorkSize {
   double surface_pixels = 0.0;  // area to map, in pixels of photos at full size
   int blocks = 1;               // that are trained
   int log2_table_size = 0;      // largest; 0: not known yet
-  double gsd_m = 0.0;           // of the finest block at the training width; 0: not known yet
+  double photo_gsd_m = 0.0;     // ground sampling distance of photos at full size; 0: not known yet
   bool poses_given = false;     // by a camera model: none are searched
   bool tagged = true;           // most photos have positions
   bool level = false;           // photos look level: there are no maps and no buildings
@@ -31,6 +31,8 @@ struct WorkSize {
   double PixelsAt(int image_width) const;
   // The area to map, in pixels of photos of this width.
   double SurfacePixelsAt(int image_width) const;
+  // Ground sampling distance in photos of this width, metres; 0: not known yet.
+  double GsdAt(int image_width) const;
   int TrainingPhotos() const { return photos - held_out; }
   // How many times as fast as one machine all ranks do work that they share. Rank 0 only hands it out.
   double Speedup() const;

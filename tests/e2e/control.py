@@ -85,7 +85,8 @@ def in_feet(text):
 def expect_in_maps(skyquilt, project, truth):
     """Orthophoto and surface model have the targets within 1 GSD of their coordinates, root mean square over the points."""
     skyquilt.call("partition", project, "--blocks", "1x1")
-    skyquilt.call("train", project, "--set", "context.steps=600", "--set", "train.steps=800")
+    skyquilt.call("train", project, "--set", "context.steps=600", "--set", "train.steps=800", "--set", "train.batch_samples=16384",
+                  "--set", "context.batch_samples=16384")
     skyquilt.call("merge", project)
     skyquilt.call("render", project, "--ortho", "--dsm", "--resolution", "0.1")
     picture, surface = Raster(project / "products" / "orthophoto.tif", band=2), Raster(project / "products" / "dsm.tif")
@@ -120,7 +121,7 @@ def test(skyquilt, folder):
     model = models[0]
 
     def prepare(name, *words, source=photos, status=0):
-        return skyquilt.call("prepare", source, "-o", folder / name, "--model", model, *words, status=status)
+        return skyquilt.call("prepare", source, "-o", folder / name, "--model", model, "--set", "products.preview=false", *words, status=status)
 
     # Tags that are all wrong by some 20 m, none, and a point that is wrong by 5 m.
     gcp = control / "gcp_list.txt"

@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
@@ -16,7 +17,7 @@ import time
 STEPS = "300"
 # Small fields: these tests are about the pipeline, not about image quality.
 SMALL = ["--steps", STEPS, "--blocks", "1x2", "--image-width", "240", "--set", "train.batch_samples=8192", "--set", "context.batch_samples=8192",
-         "--set", "partition.max_log2_table_size=15", "--set", "products.video_seconds=0",
+         "--set", "partition.max_log2_table_size=15", "--set", "products.video_seconds=0", "--set", "products.resolution_m=0.3",
          "--set", "surface.enabled=false"]
 
 # For small_project: two blocks of some seconds each, saved so often that a checkpoint is always recent.
@@ -44,10 +45,11 @@ class Skyquilt:
 
     def call(self, *words, ranks=0, status=0, timeout=900, says=()):
         """Runs to the end and returns everything printed; a different exit status is a failure, and so is a text of `says` that was not printed."""
-        shown, began = " ".join(str(word) for word in words), time.monotonic()
+        shown, began, used = " ".join(str(word) for word in words), time.monotonic(), cpu_seconds()
         done = subprocess.run(self.command(words, ranks), env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", timeout=timeout)
-        print(f"{time.monotonic() - began:6.1f} s  skyquilt {shown}", flush=True)  # what the test's time is spent on
+        # What the test's time is spent on.
+        print(f"{time.monotonic() - began:6.1f} s, {cpu_seconds() - used:6.1f} CPU s  skyquilt {shown}", flush=True)
         expect(done.returncode == status, f"'skyquilt {shown}' ended with {done.returncode}, not {status}:\n{done.stdout}")
         for text in [says] if isinstance(says, str) else says:
             expect(text in done.stdout, f"'skyquilt {shown}' does not say '{text}':\n{done.stdout}")
@@ -56,6 +58,12 @@ class Skyquilt:
     def start(self, *words, ranks=0):
         return subprocess.Popen(self.command(words, ranks), env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                 errors="replace", start_new_session=True)
+
+
+def cpu_seconds():
+    """Of all programs that this test started and that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def replaced(words, flag, value):
@@ -159,8 +167,8 @@ def houses_project(skyquilt, project):
     survey = hamlet(skyquilt, HOUSES_WIDTH)
 
     def make(folder):
-        skyquilt.call("run", survey, "-o", folder, "--blocks", "1x1", "--image-width", HOUSES_WIDTH, "--steps", "1300", "--set",
-                      "products.video_seconds=0", "--set", "buildings.enabled=false", "--set", "evaluate.max_photos=1")
+        skyquilt.call("run", survey, "-o", folder, "--blocks", "1x1", "--image-width", HOUSES_WIDTH, "--steps", "900", "--set",
+                      "context.steps=500", "--set", "products.resolution_m=0.2", "--set", "products.video_seconds=0", "--set", "buildings.enabled=false", "--set", "evaluate.max_photos=1")
 
     return copied(shared(skyquilt, "houses", make), project), survey
 
@@ -186,7 +194,7 @@ def main(test):
     folder = pathlib.Path(tempfile.mkdtemp(prefix="skyquilt_e2e_"))
     try:
         test(Skyquilt(sys.argv[1]), folder)
-        print("passed")
+        print(f"passed; {cpu_seconds():.1f} CPU s in all")
     except Failure as failure:
         print(f"FAILED: {failure}")
         sys.exit(1)

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "core/base/random.h"
 #include "core/geo/ray_box.h"
@@ -42,11 +44,15 @@ struct PatternedSurvey {
     camera.height = kHeight;
     camera.params = {kFocal_px, kFocal_px, kWidth / 2.0, kHeight / 2.0};
     survey.cameras = {camera};
+    // Most tests want the same photos.
+    static std::map<std::pair<int, double>, image::Image8> taken;
     for (int i = 0; i < kPhotosEast * kPhotosNorth; ++i) {
       const Eigen::Vector3d eye(kWest + kSpacing_m * (i % kPhotosEast), kSouth + kSpacing_m * (i / kPhotosEast), kFlight_m + kGround_m);
       survey.photos.push_back(NadirPhoto(eye, "p" + std::to_string(10 + i) + ".png"));
       const double light = std::exp2(i % 2 == 0 ? stops : -stops);
-      image::SavePng(Photograph(survey.photos.back(), camera, light), folder / survey.photos.back().name);
+      image::Image8& picture = taken[{i, light}];
+      if (picture.width == 0) picture = Photograph(survey.photos.back(), camera, light);
+      image::SavePng(picture, folder / survey.photos.back().name);
     }
     survey.points = Points(2000);
     return survey;

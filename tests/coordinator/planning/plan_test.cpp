@@ -24,7 +24,7 @@ WorkSize InventedSize(int photos) {
   size.photo_pixels = 12e6;
   size.photo_width = 4000;
   size.surface_pixels = 1.2e6 * photos;
-  size.gsd_m = 0.05;
+  size.photo_gsd_m = 0.0125;
   return size;
 }
 
@@ -182,7 +182,7 @@ TEST(Reductions, MapsGetCoarserStepByStep) {
   const auto cells_at = [](int photo_width, int image_width, const std::string& source) {
     WorkSize size = InventedSize(200);
     size.photo_width = photo_width;
-    size.gsd_m = 0.1;
+    size.photo_gsd_m = 100.0 / photo_width;
     Settings settings;
     settings.run.image_width = image_width;
     settings.products.ortho_source = source;

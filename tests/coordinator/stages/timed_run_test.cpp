@@ -83,7 +83,7 @@ TEST_F(TimedRuns, WithoutATotalThereIsNone) {
 
 // A reduction is decided when its stage begins: options of stages before it have their results by then.
 TEST(ReductionsOfStages, ChangeNoOptionOfAnEarlierStage) {
-  const WorkSize size{.photos = 200, .held_out = 25, .photo_pixels = 12e6, .photo_width = 4000, .surface_pixels = 2e8, .gsd_m = 0.05};
+  const WorkSize size{.photos = 200, .held_out = 25, .photo_pixels = 12e6, .photo_width = 4000, .surface_pixels = 2e8, .photo_gsd_m = 0.0125};
   Settings settings;
   settings.tour.auto_stops = 3;
   const std::vector<Reduction> list = ReductionsOf(settings, size);

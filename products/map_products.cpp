@@ -187,7 +187,7 @@ void PaintFromPhotos(const scene::SceneInfo& info, const MapCaster& casting, con
     std::transform(band.place.begin(), band.place.end(), field.height_m.begin() + begin,
                    [](float height_m) { return height_m == kNoHeight ? std::numeric_limits<float>::quiet_NaN() : height_m; });
   });
-  products->painted = WritePhotoOrthophoto(info, photos.survey, field, options, boundary, photos.memory, folder, photos.threads);
+  products->painted = WritePhotoOrthophoto(info, photos, field, options, boundary, folder);
   if (!products->painted) WriteFieldOrthophoto(info, field, products->orthophoto);
   if (!options.dsm) return;
   std::vector<gis::Boundary> boundaries;

@@ -31,12 +31,6 @@ struct MapProducts {
   std::optional<PhotoOrthophoto> painted;  // nothing when the orthophoto was rendered
 };
 
-// What an orthophoto is painted from.
-struct MapPhotos {
-  const survey::Survey& survey;
-  size_t memory;  // bytes that photos in memory may take
-  base::ThreadPool& threads;
-};
 // Of the memory that the program may use: a quarter, and no more than photos of neighbouring tiles need.
 size_t PictureMemory(double limit_bytes);
 

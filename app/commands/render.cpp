@@ -112,7 +112,11 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     asked.ortho = flags.ortho;
     asked.dsm = flags.dsm;
     std::optional<products::MapPhotos> photos;
-    if (from_photos) photos.emplace(products::MapPhotos{*survey, products::PictureMemory(settings.run.MemoryLimitBytes()), threads});
+    std::unique_ptr<products::TileService> tiles;
+    if (from_photos) {
+      tiles = session.TileServiceFor(target.project->SurveyFolder());
+      photos.emplace(products::MapPhotos{*survey, products::PictureMemory(settings.run.MemoryLimitBytes()), threads, tiles.get()});
+    }
     products::LogMaps(products::MakeMapProducts(scene, asked, maps, threads, photos ? &*photos : nullptr), maps);
   }
   if (!flags.plane.empty()) {

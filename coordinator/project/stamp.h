@@ -24,7 +24,7 @@ struct StageStamp {
   FlatOptions inputs;   // name = hash or description of each input
   std::string finished_utc = {};
   double seconds = 0.0;
-  double rendering_seconds = 0.0;  // of these, for rays of the scene
+  double rendering_seconds = 0.0;  // of these, for what other ranks do where there are some: rays of the scene, tiles of the orthophoto
 
   // Identity of stage, options and inputs; date and duration do not count.
   std::string Hash() const;

@@ -41,17 +41,17 @@ void RemoteRenderer::Begin(const scene::FieldStore& store, const render::RaySegm
   store_ = &store;
   segments_ = &segments;
   splitter_.emplace(segments);
-  const std::vector<GroupMember> members = group_.WaitForRanks();
+  members_ = group_.WaitForRanks();
   std::vector<int> ranks;
   std::vector<double> memory;
-  for (const GroupMember& member : members) {
+  for (const GroupMember& member : members_) {
     ranks.push_back(member.rank);
     memory.push_back(member.memory_bytes);
   }
   groups_ = MakeRenderGroups(store, ranks, memory);
   for (const RenderGroup& group : groups_) {
     for (size_t number = 0; number < group.ranks.size(); ++number) {
-      const auto member = std::find_if(members.begin(), members.end(), [&](const GroupMember& one) { return one.rank == group.ranks[number]; });
+      const auto member = std::find_if(members_.begin(), members_.end(), [&](const GroupMember& one) { return one.rank == group.ranks[number]; });
       const nlohmann::json part = {{"threads", member->threads}, {"memory_bytes", member->memory_bytes}, {"number", number}, {"owner", group.owner}};
       comm_.Send(member->rank, kTagAssignment, base::JsonText(part));
     }

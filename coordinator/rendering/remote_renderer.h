@@ -28,6 +28,8 @@ class RemoteRenderer : public scene::RayService {
   void Begin(const scene::FieldStore& store, const render::RaySegments& segments) override;
   void Render(std::span<const render::Ray> rays, std::span<render::RayColor> out, const render::EngineOptions& options) override;
 
+  // Those that render, after Begin.
+  const std::vector<GroupMember>& members() const { return members_; }
   scene::RenderStatistics statistics() const override { return statistics_; }
 
  private:
@@ -49,6 +51,7 @@ class RemoteRenderer : public scene::RayService {
   const scene::FieldStore* store_ = nullptr;
   const render::RaySegments* segments_ = nullptr;
   std::optional<render::RaySplitter> splitter_;  // of these
+  std::vector<GroupMember> members_;
   std::vector<RenderGroup> groups_;
   uint64_t next_id_ = 1;
   std::optional<Failure> broken_;  // a rank cannot go on, and nor can any later call

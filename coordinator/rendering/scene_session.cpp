@@ -1,5 +1,6 @@
 #include "coordinator/rendering/scene_session.h"
 
+#include "coordinator/rendering/rank_painter.h"
 #include "coordinator/rendering/serve_rays.h"
 #include "core/base/amounts.h"
 #include "core/base/log.h"
@@ -8,7 +9,7 @@ namespace skyquilt::coordinator {
 
 SceneSession::SceneSession(comm::Communicator& comm, const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet,
                            double* rendering_s)
-    : rendering_s_(rendering_s), threads_(options.threads) {
+    : comm_(comm), rendering_s_(rendering_s), threads_(options.threads) {
   if (comm.size() > 1) remote_ = std::make_unique<RemoteRenderer>(comm, RenderingSetup(scene_h5, options, verbose, quiet));
   scene_ = std::make_unique<scene::Scene>(scene::Scene::Load(scene_h5, {.memory_bytes = options.MemoryLimitBytes(), .service = remote_.get()}));
 }
@@ -30,6 +31,10 @@ SceneSession::~SceneSession() {
       "{} handovers of rays between ranks, {} fields loaded",
       count(s.rays), s.ranks, s.groups, count(s.bytes_sent), count(s.bytes_received),
       static_cast<double>(s.bytes_sent + s.bytes_received) / static_cast<double>(s.rays), count(s.handovers), s.field_loads);
+}
+
+std::unique_ptr<products::TileService> SceneSession::TileServiceFor(const std::filesystem::path& survey_folder) const {
+  return remote_ ? std::make_unique<RankPainter>(comm_, remote_->members(), survey_folder) : nullptr;
 }
 
 }  // namespace skyquilt::coordinator

@@ -9,6 +9,7 @@
 #include "core/base/thread_pool.h"
 #include "core/comm/communicator.h"
 #include "core/scene/scene.h"
+#include "products/photo_map/tile_service.h"
 
 namespace skyquilt::coordinator {
 
@@ -24,8 +25,11 @@ class SceneSession {
 
   const scene::Scene& scene() const { return *scene_; }
   base::ThreadPool& threads() { return threads_; }
+  // Paints tiles of orthophotos of this survey on the other ranks; null where this process is the only one. survey_folder: of the project.
+  std::unique_ptr<products::TileService> TileServiceFor(const std::filesystem::path& survey_folder) const;
 
  private:
+  comm::Communicator& comm_;
   double* rendering_s_;
   base::ThreadPool threads_;
   std::unique_ptr<RemoteRenderer> remote_;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "coordinator/ranks/rank_group.h"
 #include "coordinator/ranks/rank_messages.h"
 #include "coordinator/rendering/block_owners.h"
+#include "coordinator/rendering/rank_painter.h"
 #include "coordinator/rendering/ray_request.h"
 #include "core/base/errors.h"
 #include "core/base/json_text.h"
@@ -57,6 +59,7 @@ class RayServer {
     reply.field_loads = store_.loads();
     return reply;
   }
+  base::ThreadPool& threads() { return threads_; }
 
  private:
   scene::PagedRenderer::Owner Owner() const {
@@ -77,6 +80,16 @@ class RayServer {
   int number_;
   std::vector<int> owner_;
 };
+
+// The answer to rank 0: nothing, or the failure.
+std::string OpenJob(const std::string& setup, double memory_bytes, base::ThreadPool& threads, std::optional<TilePainter>* painter) {
+  try {
+    painter->emplace(setup, memory_bytes, threads);
+  } catch (...) {
+    return base::JsonText(ToJson(CurrentFailure()));
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -109,13 +122,18 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
     }
     hello["threads"] = options.UsableThreads();
     hello["memory_bytes"] = options.MemoryLimitBytes();
-    RayServer server(scene_h5, base::ParseJson(Register(comm, hello, kTagAssignment)));
+    const json part = base::ParseJson(Register(comm, hello, kTagAssignment));
+    RayServer server(scene_h5, part);
+    std::optional<TilePainter> painter;
     while (true) {
       const comm::Message message = WaitForMessage(comm);
       if (message.tag == kTagDone) return;
-      if (message.tag != kTagRays) continue;
-      comm.Send(0, kTagRayReply, ToBytes(server.Carry(RayRequestFromBytes(message.bytes))));
-      // Otherwise the reply might stay unsent while this rank renders the next request.
+      if (message.tag == kTagPaintEnd) painter.reset();
+      if (message.tag == kTagRays) comm.Send(0, kTagRayReply, ToBytes(server.Carry(RayRequestFromBytes(message.bytes))));
+      if (message.tag == kTagPaint)
+        comm.Send(0, kTagPaintReady, OpenJob(message.bytes, part.at("memory_bytes").get<double>(), server.threads(), &painter));
+      if (message.tag == kTagTiles && painter) comm.Send(0, kTagTilesPainted, painter->Answer(message.bytes));
+      // Otherwise the reply might stay unsent while this rank works on the next request.
       comm.WaitUntilSent();
     }
   });

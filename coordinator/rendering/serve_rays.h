@@ -1,4 +1,4 @@
-// Rendering on the other ranks: they render the rays that rank 0 sends (see remote_renderer.h).
+// Rendering on the other ranks: they render the rays that rank 0 sends (see remote_renderer.h), and paint tiles of an orthophoto (rank_painter.h).
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace skyquilt::coordinator {
 // The content of a kTagScene message.
 std::string RenderingSetup(const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet);
 
-// Renders requested rays until kTagDone. Errors are reported to rank 0 and not thrown.
+// Renders and paints what is asked for until kTagDone. Errors are reported to rank 0 and not thrown.
 void ServeRays(comm::Communicator& comm, const std::string& setup);
 
 }  // namespace skyquilt::coordinator

@@ -153,8 +153,11 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   base::ThreadPool& threads = session.threads();
   std::filesystem::create_directories(folder);
   if (options.ortho || options.dsm) {
-    const products::MapPhotos photos{survey, products::PictureMemory(pipeline.settings.run.MemoryLimitBytes()), threads};
-    products::LogMaps(products::MakeMapProducts(scene, options, folder, threads, from_photos ? &photos : nullptr), folder);
+    const std::unique_ptr<products::TileService> tiles = session.TileServiceFor(pipeline.project.SurveyFolder());
+    const products::MapPhotos photos{survey, products::PictureMemory(pipeline.settings.run.MemoryLimitBytes()), threads, tiles.get()};
+    const products::MapProducts made = products::MakeMapProducts(scene, options, folder, threads, from_photos ? &photos : nullptr);
+    products::LogMaps(made, folder);
+    if (made.painted) pipeline.rendering_s += made.painted->painting_s;
   }
   const scene::Appearance appearance = products::AppearanceOf(options.exposure, scene.info());
   if (kinds.elevations) {

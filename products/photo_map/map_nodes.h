@@ -30,6 +30,13 @@ struct PhotoMapInput {
   size_t picture_bytes = size_t{1} << 30;  // of photos kept in memory
 };
 
+// A part of a map or of a surface, in cells.
+struct TileArea {
+  int column = 0, row = 0, columns = 0, rows = 0;
+
+  size_t size() const { return static_cast<size_t>(columns) * static_cast<size_t>(rows); }
+};
+
 // A node stands for kNodeCells x kNodeCells cells of the map, which it is in the middle of.
 constexpr int kNodeCells = 8;
 constexpr size_t kKeptChoices = 4;

@@ -97,6 +97,10 @@ void PaintedRows::Write(int first_row, const PhotoMapRows& rows) const {
   base::WriteFileAtomically(FileOf(first_row), base::HashHex(bytes.bytes()) + bytes.bytes());
 }
 
+bool PaintedRows::Stands(int first_row) const {
+  return fs::exists(FileOf(first_row));
+}
+
 int PaintedRows::Count() const {
   int parts = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) parts += entry.path().extension() == ".bin" ? 1 : 0;

@@ -19,6 +19,8 @@ class PaintedRows {
   bool Read(int first_row, size_t cells, PhotoMapRows* rows) const;
   // Throws base::InputError (disk full).
   void Write(int first_row, const PhotoMapRows& rows) const;
+  // Whether there is a file of them, damaged or not.
+  bool Stands(int first_row) const;
   // How many parts stand.
   int Count() const;
   // Removes the folder.

@@ -1,6 +1,7 @@
 #include "products/photo_map/photo_map.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -16,9 +17,16 @@ constexpr double kPixelsPerCell = 1.6;  // along an axis: photos that are finer 
 
 }  // namespace
 
-PhotoMap::PhotoMap(const PhotoMapInput& input, base::ThreadPool& threads)
-    : input_(input), pictures_(input.survey, input.ground_z, input.grid.resolution_m, kPixelsPerCell, input.picture_bytes) {
+PhotoMap::PhotoMap(const PhotoMapInput& input, PhotoLight light, MapNodes nodes)
+    : input_(input),
+      light_(std::move(light)),
+      nodes_(std::move(nodes)),
+      pictures_(input.survey, input.ground_z, input.grid.resolution_m, kPixelsPerCell, input.picture_bytes),
+      eyes_map_(EyesOnMap(input.survey, input.projection)) {
   SKYQUILT_CHECK(input.survey.photos.size() <= kMostMapPhotos, std::to_string(input.survey.photos.size()) + " photos");
+}
+
+PhotoMap::PhotoMap(const PhotoMapInput& input, base::ThreadPool& threads) : PhotoMap(input, PhotoLight{}, MapNodes{}) {
   PhotoPictures small(input.survey, input.ground_z, kNodeCells * input.grid.resolution_m, kSmallPixelsPerNode, input.picture_bytes);
   light_ = MeasureLight(input_, small, threads);
   nodes_ = ChoosePhotosOfNodes(input_, light_, small, threads);
@@ -30,14 +38,30 @@ void PhotoMap::PaintRows(int first_row, int n_rows, base::ThreadPool& threads, P
   const auto width = static_cast<size_t>(input_.grid.width);
   rows->rgba.assign(4 * width * static_cast<size_t>(n_rows), 0);
   rows->sources.assign(width * static_cast<size_t>(n_rows), kNoSource);
-  const std::vector<Eigen::Vector3d> eyes_map = EyesOnMap(input_.survey, input_.projection);
-  threads.ParallelFor((input_.grid.width + kTileColumns - 1) / kTileColumns, [&](int64_t task, int /*thread*/) {
-    base::ThrowIfCancelled();
-    const int column = static_cast<int>(task) * kTileColumns;
-    const TileArea core{column, first_row, std::min(kTileColumns, input_.grid.width - column), n_rows};
-    TilePainter painter(input_, nodes_, light_, eyes_map, pictures_, core);
-    painter.Paint(rows->rgba.data() + 4 * static_cast<size_t>(column), rows->sources.data() + column, width);
+  const std::vector<TileArea> tiles = TilesOf(input_.grid, first_row, n_rows);
+  threads.ParallelFor(static_cast<int64_t>(tiles.size()), [&](int64_t task, int /*thread*/) {
+    const TileArea& tile = tiles[static_cast<size_t>(task)];
+    Paint(tile, rows->rgba.data() + 4 * static_cast<size_t>(tile.column), rows->sources.data() + tile.column, width);
   });
+}
+
+std::vector<TileArea> PhotoMap::TilesOf(const gis::MapGrid& grid, int first_row, int n_rows) {
+  std::vector<TileArea> tiles;
+  for (int column = 0; column < grid.width; column += kTileColumns) {
+    tiles.push_back({column, first_row, std::min(kTileColumns, grid.width - column), n_rows});
+  }
+  return tiles;
+}
+
+void PhotoMap::PaintTile(const TileArea& tile, PhotoMapRows* cells) {
+  cells->rgba.assign(4 * tile.size(), 0);
+  cells->sources.assign(tile.size(), kNoSource);
+  Paint(tile, cells->rgba.data(), cells->sources.data(), static_cast<size_t>(tile.columns));
+}
+
+void PhotoMap::Paint(const TileArea& tile, uint8_t* rgba, uint16_t* sources, size_t row_cells) {
+  base::ThrowIfCancelled();
+  TilePainter(input_, nodes_, light_, eyes_map_, pictures_, tile).Paint(rgba, sources, row_cells);
 }
 
 }  // namespace skyquilt::products

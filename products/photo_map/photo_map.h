@@ -24,6 +24,8 @@ class PhotoMap {
   // Measures the photos' light and chooses which photo shows what. Keeps a copy of the input, and so references to what it refers to. Throws
   // base::Interrupted.
   PhotoMap(const PhotoMapInput& input, base::ThreadPool& threads);
+  // With what another PhotoMap of the same input has found.
+  PhotoMap(const PhotoMapInput& input, PhotoLight light, MapNodes nodes);
 
   const MapNodes& nodes() const { return nodes_; }
   const PhotoLight& light() const { return light_; }
@@ -35,13 +37,21 @@ class PhotoMap {
   // Paints rows first_row .. first_row + n_rows, at most kRows of them, n tiles at a time for n threads. The same bytes for any number of threads.
   // Memory: pictures as the input says, and about 90 MB per thread. Throws base::Interrupted.
   void PaintRows(int first_row, int n_rows, base::ThreadPool& threads, PhotoMapRows* rows);
+  // The tiles that PaintRows paints, from west to east; they may also be painted one by one, several at the same time.
+  static std::vector<TileArea> TilesOf(const gis::MapGrid& grid, int first_row, int n_rows);
+  // `cells`: those of the tile alone.
+  void PaintTile(const TileArea& tile, PhotoMapRows* cells);
 
  private:
+  // row_cells: cells from one row to the next in both.
+  void Paint(const TileArea& tile, uint8_t* rgba, uint16_t* sources, size_t row_cells);
+
   PhotoMapInput input_;
   PhotoLight light_;
   MapNodes nodes_;
   std::vector<std::string> failures_;
   PhotoPictures pictures_;  // at the map's detail
+  std::vector<Eigen::Vector3d> eyes_map_;
 };
 
 }  // namespace skyquilt::products

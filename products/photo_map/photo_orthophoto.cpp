@@ -1,14 +1,17 @@
 #include "products/photo_map/photo_orthophoto.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "core/base/cancel.h"
+#include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
 #include "core/base/log.h"
@@ -19,6 +22,7 @@
 #include "products/map_area.h"
 #include "products/map_rays.h"
 #include "products/photo_map/map_edge.h"
+#include "products/photo_map/paint_job.h"
 #include "products/photo_map/painted_rows.h"
 #include "products/photo_map/photo_map.h"
 #include "products/place_metadata.h"
@@ -129,6 +133,53 @@ gis::GeoTiffSpec SourcesSpec(const scene::SceneInfo& info, const gis::MapGrid& g
   return spec;
 }
 
+int RowsOfPart(const gis::MapGrid& grid, int first_row) {
+  return std::min(PhotoMap::kRows, grid.height - first_row);
+}
+
+// Paints all parts that are missing. Those that are not complete at an interruption are lost.
+void PaintElsewhere(const PhotoMapInput& input, const geo::Geodetic& origin, const PhotoMap& map, const std::filesystem::path& parts_folder,
+                    TileService& service, PaintedRows& painted) {
+  const gis::MapGrid& grid = input.grid;
+  std::vector<TileArea> tiles;
+  for (int first_row = 0; first_row < grid.height; first_row += PhotoMap::kRows) {
+    if (painted.Stands(first_row)) continue;
+    const std::vector<TileArea> more = PhotoMap::TilesOf(grid, first_row, RowsOfPart(grid, first_row));
+    tiles.insert(tiles.end(), more.begin(), more.end());
+  }
+  if (tiles.empty()) return;
+  struct Part {
+    PhotoMapRows rows;
+    int columns = 0;  // that are painted
+  };
+  std::map<int, Part> open;  // by first row
+  base::Progress progress("painting", static_cast<double>(grid.width) * grid.height, "cells");
+  double done = 0.0;
+  const std::filesystem::path job = parts_folder / "job";
+  WritePaintJob(input, origin, map, job);
+  service.Paint(job, tiles, [&](size_t index, PhotoMapRows cells) {
+    const TileArea& tile = tiles[index];
+    SKYQUILT_CHECK(cells.rgba.size() == 4 * tile.size() && cells.sources.size() == tile.size(), "a tile comes back whole");
+    Part& part = open[tile.row];
+    part.rows.rgba.resize(4 * grid.Index(0, tile.rows));
+    part.rows.sources.resize(grid.Index(0, tile.rows));
+    for (int row = 0; row < tile.rows; ++row) {
+      const auto from = static_cast<std::ptrdiff_t>(tile.columns) * row;
+      const auto to = static_cast<std::ptrdiff_t>(grid.Index(tile.column, row));
+      std::copy_n(cells.rgba.begin() + 4 * from, 4 * tile.columns, part.rows.rgba.begin() + 4 * to);
+      std::copy_n(cells.sources.begin() + from, tile.columns, part.rows.sources.begin() + to);
+    }
+    part.columns += tile.columns;
+    if (part.columns == grid.width) {
+      painted.Write(tile.row, part.rows);
+      open.erase(tile.row);
+    }
+    progress.Update(done += static_cast<double>(tile.size()));
+  });
+  std::filesystem::remove(job);
+  progress.Finish();
+}
+
 void WriteSources(const survey::Survey& survey, const PhotoOrthophoto& made, const std::vector<int64_t>& cells_of,
                   const std::filesystem::path& file) {
   nlohmann::ordered_json photos = nlohmann::ordered_json::object();
@@ -152,9 +203,11 @@ double PhotoResolution(const survey::Survey& survey, double ground_z) {
   return gsd_m.empty() ? std::numeric_limits<double>::quiet_NaN() : NiceResolution(base::Median(gsd_m));
 }
 
-std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info, const survey::Survey& survey, const FieldMap& field,
-                                                    const ProductOptions& options, const std::optional<gis::Boundary>& boundary, size_t memory,
-                                                    const std::filesystem::path& folder, base::ThreadPool& threads) {
+std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info, const MapPhotos& photos, const FieldMap& field,
+                                                    const ProductOptions& options, const std::optional<gis::Boundary>& boundary,
+                                                    const std::filesystem::path& folder) {
+  const survey::Survey& survey = photos.survey;
+  base::ThreadPool& threads = photos.threads;
   const std::vector<double> ground = GroundHeights(info, field);
   const double ground_z = ground.empty() ? std::numeric_limits<double>::quiet_NaN() : base::Median(ground);
   const double photo_resolution_m = PhotoResolution(survey, ground_z);
@@ -186,7 +239,7 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
                             .field_rgba = field.rgba,
                             .ground_z = ground_z,
                             .flown_height_m = FlownHeight(survey, ground_z),
-                            .picture_bytes = memory};
+                            .picture_bytes = photos.memory};
   PhotoMap map(input, threads);
   WarnOfFailures(map.failures(), n_usable);
   made.unreadable = static_cast<int>(map.failures().size());
@@ -209,13 +262,15 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
     base::LogInfo("goes on with the orthophoto that was interrupted: {} of {} parts are painted", parts,
                   (grid.height + PhotoMap::kRows - 1) / PhotoMap::kRows);
   }
+  const auto began = std::chrono::steady_clock::now();
+  if (photos.elsewhere != nullptr && painted) PaintElsewhere(input, info.origin, map, folder / "orthophoto.parts", *photos.elsewhere, *painted);
   gis::GeoTiffWriter ortho(folder / "orthophoto.tif", OrthophotoSpec(info, grid, "Orthophoto"));
   gis::GeoTiffWriter sources(folder / "ortho_sources.tif", SourcesSpec(info, grid));
   base::Progress progress("orthophoto", static_cast<double>(grid.width) * grid.height, "cells");
   std::vector<int64_t> cells_of(kFirstPhotoSource + survey.photos.size(), 0);
   PhotoMapRows rows;
   for (int first_row = 0; first_row < grid.height; first_row += PhotoMap::kRows) {
-    const int n_rows = std::min(PhotoMap::kRows, grid.height - first_row);
+    const int n_rows = RowsOfPart(grid, first_row);
     if (!painted || !painted->Read(first_row, grid.Index(0, n_rows), &rows)) {
       map.PaintRows(first_row, n_rows, threads, &rows);
       if (painted) painted->Write(first_row, rows);
@@ -242,6 +297,7 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
   ortho.Close();
   sources.Close();
   progress.Finish();
+  made.painting_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   for (size_t i = kFromField; i < cells_of.size(); ++i) {
     made.cells += cells_of[i];
     if (i >= kFirstPhotoSource && cells_of[i] > 0) ++made.photos;

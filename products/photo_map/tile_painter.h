@@ -11,10 +11,6 @@
 
 namespace skyquilt::products {
 
-struct TileArea {
-  int column = 0, row = 0, columns = 0, rows = 0;  // cells
-};
-
 class TilePainter {
  public:
   // References are kept. eyes_map: EyesOnMap. Paints `core` and what is around it as far as blending reaches.

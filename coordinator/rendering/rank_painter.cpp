@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "coordinator/ranks/failure.h"
@@ -65,6 +66,7 @@ void RankPainter::Paint(const std::filesystem::path& job, std::span<const TileAr
   std::deque<size_t> waiting(tiles.size());
   std::iota(waiting.begin(), waiting.end(), size_t{0});
   size_t taken = 0;
+  std::set<int> painted_by;
   const auto drop = [&](int rank, const Failure& failure) {
     if (failure.kind == Failure::kInterrupted) Throw(failure);
     base::LogWarning("{} does not paint the orthophoto, others do: {}", comm_.NameOf(rank), failure.Text());
@@ -116,7 +118,9 @@ void RankPainter::Paint(const std::filesystem::path& job, std::span<const TileAr
       ++taken;
     }
     reply.End();
+    painted_by.insert(message.source);
   }
+  if (taken > 0) base::LogInfo("{} tiles of the orthophoto painted by {} other rank{}", taken, painted_by.size(), painted_by.size() == 1 ? "" : "s");
 }
 
 TilePainter::TilePainter(const std::string& setup, double memory_bytes, base::ThreadPool& threads)

@@ -54,6 +54,23 @@ def resume_evaluation(skyquilt, project, options, expected):
         expect(not progress.exists(), "a resumed evaluation leaves the file of its progress")
 
 
+def check_painting(skyquilt, project, folder):
+    """An orthophoto of several tiles, a strip from south to north: painted by other ranks, the same bytes."""
+    origin = json.loads((project / "survey" / "survey.json").read_text())["origin"]
+    east, north = origin["longitude_deg"], origin["latitude_deg"]
+    ring = [[east + 8e-5 * x, north + 72e-5 * y] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))]
+    strip = folder / "strip.geojson"
+    strip.write_text(json.dumps({"type": "Polygon", "coordinates": [ring]}))
+    asked = ("render", project, "--ortho", "--resolution", "0.1", "--boundary", strip)
+
+    def maps(name):
+        return {file: (folder / name / file).read_bytes() for file in ("orthophoto.tif", "ortho_sources.tif")}
+
+    skyquilt.call(*asked, "-o", folder / "strip")
+    skyquilt.call(*asked, "-o", folder / "strip3", ranks=3, says="tiles of the orthophoto painted by 2 other ranks")
+    expect(maps("strip3") == maps("strip"), "ranks paint another orthophoto")
+
+
 def pictures_of(folder):
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".png", ".tiff", ".tif"))
     expect(len(files) >= 6, f"{folder} has only {[path.name for path in files]}")
@@ -106,6 +123,8 @@ def test(skyquilt, folder):
     expect(pictures_of(folder / "shared") == alone, "ranks that hold parts of a scene render other images")
     handovers = re.search(r"([\d.]+ ?[kM]?) handovers", text)
     expect("1 group(s)" in text and handovers and handovers.group(1) != "0", f"no ray was handed from rank to rank:\n{text}")
+
+    check_painting(skyquilt, project, folder)
 
     text = skyquilt.call("render", project, *asked, "-o", folder / "tiny", "--memory", "100kB", status=2)
     expect("--memory" in text and not list((folder / "tiny").glob("*.png")), f"too little memory is not explained:\n{text}")

@@ -16,7 +16,7 @@ WorkSize Flight(int photos) {
   size.photo_width = 4000;
   size.surface_pixels = 1.4e6 * photos;
   size.blocks = 4;
-  size.photo_gsd_m = 0.1;
+  size.photo_gsd_m = 0.025;
   size.threads = 2;
   return size;
 }

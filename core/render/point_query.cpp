@@ -95,8 +95,9 @@ void PointEvaluator::Add(const TrainedField& trained, std::span<const QueryPoint
   features_.resize(std::max(features_.size(), rows * field::kChunkStride));
   geometry_.resize(static_cast<size_t>(field::kGeometryRows) * field::kChunkStride);
   depth_.resize(field::kChunkStride);
-  const kernel::Positions at{x_.data(), y_.data(), z_.data(), trained.config.Cones() ? sharpness_.data() : nullptr,
-                             static_cast<int>(PositionsPerPoint(trained)), inside_.size()};
+  const kernel::Positions at{
+      x_.data(),     y_.data(), z_.data(), trained.config.Cones() ? sharpness_.data() : nullptr, static_cast<int>(PositionsPerPoint(trained)),
+      inside_.size()};
   f.EncodeSerial(trained.parameters.grid, at, n, features_.data(), field::kChunkStride);
   for (size_t row = 0; row < rows; ++row) std::fill_n(features_.data() + row * field::kChunkStride + n, padded - n, 0.0F);
   const field::Activations& scratch = scratch_[scratch_.For(f)];

@@ -41,12 +41,12 @@ class PointEvaluator {
   void EvaluateColors(const TrainedField& f, std::span<const QueryPoint> points);
 
   ScratchPool scratch_;
-  std::vector<size_t> inside_;          // indices of the points that are evaluated
-  std::vector<Eigen::Vector3f> unit_;   // their positions in the unit frame
-  std::vector<float> x_, y_, z_;           // planes of their positions
-  std::vector<float> sharpness_;           // per evaluated point
+  std::vector<size_t> inside_;              // indices of the points that are evaluated
+  std::vector<Eigen::Vector3f> unit_;       // their positions in the unit frame
+  std::vector<float> x_, y_, z_;            // planes of their positions
+  std::vector<float> sharpness_;            // per evaluated point
   std::vector<float> features_, geometry_;  // rows of field::kChunkStride, as all below
-  std::vector<float> depth_;               // optical depth of one marching step
+  std::vector<float> depth_;                // optical depth of one marching step
   std::vector<float> color_in_, color_;
 };
 

@@ -23,7 +23,11 @@ struct Way {
 }  // namespace
 
 PagedRenderer::PagedRenderer(FieldStore& store, const render::RaySegments& segments, base::ThreadPool& threads)
-    : store_(store), segments_(segments), threads_(threads), splitters_(static_cast<size_t>(threads.size()), render::RaySplitter(segments)), some_(static_cast<size_t>(threads.size())) {}
+    : store_(store),
+      segments_(segments),
+      threads_(threads),
+      splitters_(static_cast<size_t>(threads.size()), render::RaySplitter(segments)),
+      some_(static_cast<size_t>(threads.size())) {}
 
 void PagedRenderer::ForGroups(size_t n, const std::function<void(size_t begin, size_t end, int thread)>& body) {
   const int64_t each = (static_cast<int64_t>(n) + threads_.size() - 1) / threads_.size();

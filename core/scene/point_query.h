@@ -15,8 +15,8 @@ namespace skyquilt::scene {
 
 struct PointColor {
   float density = 0.0F;  // optical depth per metre; 0 where a rendering takes no samples; NaN for a point that is not finite
-  // Display values at reference exposure, as the plain rendition of a concealing field has them: the fields' colours by their densities. NaN where the
-  // density is 0, or when no colours were asked for.
+  // Display values at reference exposure, as the plain rendition of a concealing field has them: the fields' colours by their densities. NaN where
+  // the density is 0, or when no colours were asked for.
   float rgb_srgb[3] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
 };
 

@@ -93,7 +93,7 @@ struct Scene::Impl {
   std::unique_ptr<FieldStore> store;
   std::unique_ptr<render::RaySegments> segments;
   std::optional<render::GroundIndex> ground;  // of the blocks; made for the first query
-  std::unique_ptr<PagedRenderer> pager;  // for pager_threads
+  std::unique_ptr<PagedRenderer> pager;       // for pager_threads
   const base::ThreadPool* pager_threads = nullptr;
   RayService* service = nullptr;
   RenderStatistics statistics;

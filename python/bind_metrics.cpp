@@ -19,7 +19,8 @@ using Bytes = py::array_t<uint8_t, py::array::c_style | py::array::forcecast>;
 
 template <typename T>
 image::BasicImage<T> ImageOf(const py::array_t<T, py::array::c_style | py::array::forcecast>& array) {
-  image::BasicImage<T> image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), array.ndim() == 2 ? 1 : static_cast<int>(array.shape(2)));
+  image::BasicImage<T> image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)),
+                             array.ndim() == 2 ? 1 : static_cast<int>(array.shape(2)));
   std::copy_n(array.data(), array.size(), image.data.begin());
   return image;
 }

@@ -35,8 +35,8 @@ class OpenScene {
   const scene::SceneInfo& info() const { return session_.scene().info(); }
   const Places& places() const { return places_; }
 
-  // All of these throw base::Interrupted when cancelled, base::UsageError for wrong arguments and in a process that was forked off after the scene was
-  // opened, whose threads are missing.
+  // All of these throw base::Interrupted when cancelled, base::UsageError for wrong arguments and in a process that was forked off after the scene
+  // was opened, whose threads are missing.
 
   // exposure: as products.exposure. normals: "depth", "density", "predicted"; empty: none.
   Rendered Render(const products::View& view, const std::string& exposure, const std::string& normals);
@@ -45,8 +45,8 @@ class OpenScene {
   // Points in ENU; directions: one or as many.
   void Query(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector3d> directions, const scene::PointOptions& options,
              std::span<scene::PointColor> out);
-  // Heights of the surface from above at places x, y of a frame, in this frame's heights: where half of the light of a column of this width has passed.
-  // width_m: 0: ground sampling distance of the scene. NaN where there is no surface and outside the scene.
+  // Heights of the surface from above at places x, y of a frame, in this frame's heights: where half of the light of a column of this width has
+  // passed. width_m: 0: ground sampling distance of the scene. NaN where there is no surface and outside the scene.
   void Heights(std::span<const Eigen::Vector2d> places, Frame frame, double width_m, std::span<double> out);
   void ToEnu(Frame from, std::span<const Eigen::Vector3d> in, std::span<Eigen::Vector3d> out);
   void FromEnu(Frame to, std::span<const Eigen::Vector3d> in, std::span<Eigen::Vector3d> out);

@@ -100,7 +100,7 @@ void Run(comm::Communicator& comm, const StageCall& call) {
 }
 
 void ContinueProject(comm::Communicator& comm, const StageCall& call) {
-  using Do = void (*)(coordinator::Pipeline& pipeline);
+  using Do = void (*)(coordinator::Pipeline & pipeline);
   static const std::map<std::string, Do> kStages = {
       {"partition", coordinator::PartitionStage},
       {"train", [](coordinator::Pipeline& p) { coordinator::ThrowIfBlocksFailed(coordinator::TrainStage(p), p.project); }},

@@ -30,7 +30,7 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)  # a package for each component
 set(CPACK_COMPONENTS_ALL program)
 set(CPACK_PACKAGE_CONTACT ${SKYQUILT_MAINTAINER})
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "drone photos to a geo-referenced radiance field, on CPUs")
+# Their first lines are the summaries; CPACK_PACKAGE_DESCRIPTION_SUMMARY would be put before all of them.
 file(READ packaging/description CPACK_DEBIAN_PROGRAM_DESCRIPTION)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)

@@ -13,7 +13,7 @@ else()
   if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)
     set(Python_EXECUTABLE /usr/bin/python3)
   endif()
-  find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module NumPy)
+  find_package(Python 3.10 QUIET COMPONENTS Interpreter Development.Module NumPy)
   set(PYBIND11_NOPYTHON ON)  # only its headers: Python was found above
   find_package(pybind11 2.10 QUIET CONFIG)
   if(NOT Python_Development.Module_FOUND)

@@ -18,7 +18,7 @@ from .scene import Scene
 from .survey import Survey
 from .views import View
 
-PathLike = "str | os.PathLike[str]"
+PathLike = str | os.PathLike[str]
 
 
 class Project:

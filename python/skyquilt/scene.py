@@ -6,7 +6,7 @@ import json
 import os
 import pathlib
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +17,7 @@ from .views import Camera, View
 
 Floats = npt.NDArray[np.float32]
 Doubles = npt.NDArray[np.float64]
-PathLike = "str | os.PathLike[str]"
+PathLike = str | os.PathLike[str]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -131,6 +131,20 @@ class Scene:
             file = pathlib.Path("the path given")
             text = json.dumps(_with_fov(where, fov), default=_number)
         return [View._of_tuple(parts) for parts in self._open().path(text, file, columns, rows)]
+
+    @overload
+    def render(self, where: View, *, exposure: str | float = "normal", normals: str | None = None) -> Picture: ...
+
+    @overload
+    def render(self, where: list[View], *, exposure: str | float = "normal", normals: str | None = None) -> list[Picture]: ...
+
+    @overload
+    def render(self, where: PathLike, width: int | None = None, height: int | None = None, *, fov: float = 60.0, exposure: str | float = "normal",
+               normals: str | None = None) -> list[Picture]: ...
+
+    @overload
+    def render(self, where: Any, width: int | None = None, height: int | None = None, *, fov: float = 60.0, exposure: str | float = "normal",
+               normals: str | None = None) -> Any: ...
 
     def render(self, where: Any, width: int | None = None, height: int | None = None, *, fov: float = 60.0, exposure: str | float = "normal",
                normals: str | None = None) -> Any:

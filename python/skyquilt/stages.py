@@ -26,7 +26,7 @@ from ._options import overrides
 from .errors import UsageError
 from .project import Project
 
-PathLike = "str | os.PathLike[str]"
+PathLike = str | os.PathLike[str]
 Progress = Callable[[str, float], object]
 
 

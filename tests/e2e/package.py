@@ -27,6 +27,7 @@ def names(field):
 
 def module(package, root, version, away, built_in, field):
     """The Python module alone, without the program: it is imported from an empty root, and answers."""
+    expect(field("Description", package).splitlines()[0].endswith("Python module"), field("Description", package))
     depends = names(field("Depends", package))
     for wanted in ("python3", "python3-numpy", "libhdf5", "libgdal", "libopencv-core"):
         expect(any(name.startswith(wanted) for name in depends), f"{wanted} is not among {depends} of the module")
@@ -62,6 +63,7 @@ def test(_, folder):
 
     version = field("Version")
     expect(package.name == f"skyquilt_{version}_{field('Architecture')}.deb", package.name)
+    expect(field("Description").splitlines()[0].endswith("radiance field, on CPUs"), field("Description"))
     depends = names(field("Depends"))
     for wanted in ("openmpi-bin", "libopenmpi", "libhdf5", "libgdal", "libopencv-core", "libexiv2", "libembree"):
         expect(any(name.startswith(wanted) for name in depends), f"{wanted} is not among {depends}")

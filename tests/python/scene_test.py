@@ -7,6 +7,7 @@ import pathlib
 import pickle
 import resource
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -112,22 +113,21 @@ class Points(unittest.TestCase):
     def test_density_and_colour_are_those_of_a_sample_of_a_ray(self):
         """A ray without width takes its first sample half a step after its start. So a ray that starts there and ends before the next one has the
         optical depth density * step, and the colour of this place."""
-        steps = {block["properties"]["finest_voxel_m"] for block in PROJECT.blocks["features"]}
-        self.assertEqual(len(steps), 1)  # both blocks have the same, so that samples of both are at the same place where they are blended
-        step = steps.pop()
-        low, high = np.array(SCENE.info["min_enu"]), np.array(SCENE.info["max_enu"])
-        inside = ((self.points > low) & (self.points < high))[:, :].all(axis=1)
-        blended = inside & (np.abs(self.points[:, 0] - SCENE.info["blocks"][0]["max_enu"][0]) < 0.5 * SCENE.info["blocks"][0]["margin_m"])
-        self.assertGreater(np.count_nonzero(blended), 20)
-        self._compare(self.points[inside], step)
-        self._compare(self.points[blended], step)
+        steps = {block["properties"]["name"]: block["properties"]["finest_voxel_m"] for block in PROJECT.blocks["features"]}
+        for block in SCENE.info["blocks"]:
+            # Where no other field has a part: tests/core/scene/point_query_test.cpp has the places where fields are blended.
+            margin = np.array([block["margin_m"], block["margin_m"], 0.0])
+            inside = ((self.points > block["min_enu"] + margin) & (self.points < block["max_enu"] - margin)).all(axis=1)
+            self._compare(self.points[inside], steps[block["name"]])
 
     def test_the_context_answers_beyond_the_blocks(self):
         low, high = np.array(SCENE.info["min_enu"])[:2], np.array(SCENE.info["max_enu"])[:2]
         margin = max(block["margin_m"] for block in SCENE.info["blocks"])
-        beyond = ((self.points[:, :2] < low - margin) | (self.points[:, :2] > high + margin)).any(axis=1)
-        points = self.points[beyond]
-        points = points[SCENE.query(points).density > 0.0]
+        random = np.random.default_rng(9)
+        heights = (SCENE.info["min_enu"][2], SCENE.info["max_enu"][2])
+        points = np.column_stack([random.uniform(low - 4 * margin, high + 4 * margin, (20000, 2)), random.uniform(*heights, 20000)])
+        points = points[((points[:, :2] < low - margin) | (points[:, :2] > high + margin)).any(axis=1)]
+        points = points[SCENE.query(points).density > 0.0][:1000]
         self.assertGreater(len(points), 20)
         # Its step is not in a file: the shortest ray that meets something is half of one long.
         short, long = 0.0, 8.0
@@ -176,19 +176,18 @@ class Points(unittest.TestCase):
         np.testing.assert_array_equal(lost.density, [np.nan, np.nan, 0.0])
 
     def test_speed(self):
+        """By the processor's time, so that it does not depend on what runs beside."""
         with PROJECT.scene(threads=1) as alone:
             many = np.tile(self.points, (40, 1))
             alone.query(many[:1000])
-            began = time.perf_counter()
-            asked = alone.query(many, colors=False)
-            of_densities = len(many) / (time.perf_counter() - began)
-            began = time.perf_counter()
-            alone.query(many)
-            with_colors = len(many) / (time.perf_counter() - began)
-        share = np.count_nonzero(asked.density) / len(many)
-        print(f"one thread, {100 * share:.0f} % of the points in cells that are not free: {of_densities / 1e6:.2f} million densities, "
-              f"{with_colors / 1e6:.2f} million colours per second")
-        self.assertGreater(with_colors, 20000.0)  # of a machine that does much else
+            rates = {}
+            for colors in (False, True):
+                began = time.process_time()
+                asked = alone.query(many, colors=colors)
+                rates[colors] = len(many) / (time.process_time() - began)
+        print(f"one core: {rates[False] / 1e6:.2f} million densities or {rates[True] / 1e6:.2f} million densities and colours per second; "
+              f"{100 * np.count_nonzero(asked.density) / len(many):.0f} % of the points in cells that are not free")
+        self.assertGreater(rates[True], 1e5 if "LD_PRELOAD" not in os.environ else 0.0)
 
     def test_heights_are_those_of_rays_straight_down(self):
         plan = self.points[:200, :2]
@@ -209,13 +208,10 @@ class SurfaceModel(InFolder):
     def test_heights_are_those_of_the_map(self):
         PROGRAM.call("render", PROJECT.folder, "--dsm", "--resolution", "1", "-o", self.folder)
         dsm = pixels(self.folder / "dsm.tif")[:, :, 0]
-        text = (self.folder / "dsm.tif").read_bytes()
-        self.assertTrue(text)
-        corner = json.loads(PROGRAM.call("info", self.folder / "dsm.tif", "--json"))
-        west, north = corner["west"], corner["north"]
+        west, cell, _, north, _, _ = json.loads(subprocess.check_output(["gdalinfo", "-json", str(self.folder / "dsm.tif")]))["geoTransform"]
         rows, columns = np.mgrid[0 : dsm.shape[0], 0 : dsm.shape[1]]
-        places = np.stack([west + columns + 0.5, north - rows - 0.5], axis=2)
-        heights = SCENE.heights(places, "utm", width_m=1.0)
+        places = np.stack([west + cell * (columns + 0.5), north - cell * (rows + 0.5)], axis=2)
+        heights = SCENE.heights(places, "utm", width_m=cell)
         both = np.isfinite(heights) & np.isfinite(dsm) & (dsm > -1000)
         self.assertGreater(np.count_nonzero(both), 100)
         self.assertLess(np.median(np.abs(heights[both] - dsm[both])), 2e-3)
@@ -318,7 +314,7 @@ class Threads(unittest.TestCase):
             timer.start()
             began = time.perf_counter()
             with self.assertRaises(KeyboardInterrupt):
-                SCENE.render(NEAR, 12000)
+                SCENE.render(NEAR, 2400)
             self.assertLess(time.perf_counter() - began, 20.0)
             timer.join()
         self.assertEqual(SCENE.render(NEAR, 16).color.shape, (8, 16, 3))

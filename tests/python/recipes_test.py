@@ -6,7 +6,7 @@ import sys
 import unittest
 
 import harness
-from support import PROGRAM, SOURCE, TINY, InFolder, scene_project
+from support import PRELOADED, PROGRAM, SOURCE, TINY, InFolder, scene_project
 
 try:
     import matplotlib
@@ -41,7 +41,7 @@ class Recipes(InFolder):
         self.assertEqual(list(recipes), list(EXPECTED))
         for name, source in (("out", scene_project()), ("other", other_scene()), ("photos", harness.small_survey(PROGRAM))):
             (self.folder / name).symlink_to(source)
-        environment = dict(os.environ, MPLBACKEND="Agg", MPLCONFIGDIR=str(self.folder / "matplotlib"))
+        environment = dict(os.environ, MPLBACKEND="Agg", MPLCONFIGDIR=str(self.folder / "matplotlib"), LD_PRELOAD=PRELOADED)
         for heading, code in recipes.items():
             if matplotlib is None and "matplotlib" in code:
                 print(f"'{heading}' was not run: matplotlib is not installed")

@@ -2,6 +2,7 @@
 
 A test is called with the program as its only argument; the module is found by PYTHONPATH.
 """
+import os
 import pathlib
 import shutil
 import subprocess
@@ -10,6 +11,9 @@ import tempfile
 import unittest
 
 import numpy as np
+
+# The run time of a sanitizer, which this process has by now; programs bring their own.
+PRELOADED = os.environ.pop("LD_PRELOAD", "")
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "e2e"))
 import harness  # noqa: E402  after the path above

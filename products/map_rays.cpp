@@ -70,6 +70,40 @@ gis::MapGrid PlanHeightGrid(const scene::SceneInfo& info, const ProductOptions& 
   return stated && options.ortho_source == "photos" ? PlanPhotoSurfaceGrid(info, options) : PlanMapGrid(info, options);
 }
 
+std::optional<RayDown> RayDownFrom(const scene::SceneInfo& info, const gis::MapProjection::VerticalLine& line, double line_start_height_m,
+                                   double rim_m, double width_m) {
+  const Eigen::Vector3d &start = line.start_enu, &down = line.down_enu;
+  // The point of the line at the middle height of the scene, because over kilometres vertical lines are not parallel to ENU z.
+  const double middle_z = 0.5 * (info.min_enu.z() + info.max_enu.z());
+  const Eigen::Vector3d place = start + down * ((middle_z - start.z()) / down.z());
+  if ((place.head<2>().array() < info.min_enu.head<2>().array() - rim_m).any() ||
+      (place.head<2>().array() > info.max_enu.head<2>().array() + rim_m).any()) {
+    return std::nullopt;
+  }
+  double top = -std::numeric_limits<double>::infinity();
+  double bottom = std::numeric_limits<double>::infinity();
+  for (const scene::SceneBlock& block : info.blocks) {
+    if ((place.head<2>().array() < block.TrainMin().head<2>().array()).any() ||
+        (place.head<2>().array() > block.TrainMax().head<2>().array()).any()) {
+      continue;
+    }
+    top = std::max(top, block.max_enu.z());
+    bottom = std::min(bottom, block.min_enu.z());
+  }
+  if (!(top > bottom)) {
+    top = info.max_enu.z();
+    bottom = info.min_enu.z();
+  }
+  const double s = (top - start.z()) / down.z();
+  RayDown found;
+  found.ray.origin_enu = start + s * down;
+  found.ray.direction_enu = down;
+  found.ray.t_far = (bottom - top) / down.z();
+  found.ray.pixel_width = static_cast<float>(width_m);
+  found.start_height_m = line_start_height_m - s;
+  return found;
+}
+
 MapRayGenerator::MapRayGenerator(const scene::SceneInfo& info, const gis::MapGrid& grid) : info_(info), grid_(grid), projection_(info.origin, grid) {
   step_ = static_cast<int>(std::clamp(std::floor(kLatticeSpacing_m / grid.resolution_m), 1.0, double{kLatticeCells}));
   lattice_columns_ = (grid.width - 1) / step_ + 2;
@@ -99,40 +133,13 @@ void MapRayGenerator::MakeRow(int row, MapRays* out) const {
     };
     const Eigen::Vector3d start = blend(&gis::MapProjection::VerticalLine::start_enu);
     const Eigen::Vector3d down = blend(&gis::MapProjection::VerticalLine::down_enu).normalized();
-    // The point of the line at the middle height of the scene, because over kilometres vertical lines are not parallel to ENU z.
-    const double middle_z = 0.5 * (info_.min_enu.z() + info_.max_enu.z());
-    const Eigen::Vector3d place = start + down * ((middle_z - start.z()) / down.z());
-    // Include cells that the edge of the box crosses.
-    const double rim = 0.75 * grid_.resolution_m;
-    if ((place.head<2>().array() < info_.min_enu.head<2>().array() - rim).any() ||
-        (place.head<2>().array() > info_.max_enu.head<2>().array() + rim).any()) {
-      continue;
-    }
-    // Only the height range of the blocks at this cell, so that the ray does not pass space that no block was trained on.
-    double top = -std::numeric_limits<double>::infinity();
-    double bottom = std::numeric_limits<double>::infinity();
-    for (const scene::SceneBlock& block : info_.blocks) {
-      if ((place.head<2>().array() < block.TrainMin().head<2>().array()).any() ||
-          (place.head<2>().array() > block.TrainMax().head<2>().array()).any()) {
-        continue;
-      }
-      top = std::max(top, block.max_enu.z());
-      bottom = std::min(bottom, block.min_enu.z());
-    }
-    if (!(top > bottom)) {
-      top = info_.max_enu.z();
-      bottom = info_.min_enu.z();
-    }
-    const double s = (top - start.z()) / down.z();
-    const double length = (bottom - top) / down.z();
-    render::Ray ray;
-    ray.origin_enu = start + s * down;
-    ray.direction_enu = down;
-    ray.t_far = length;
-    ray.pixel_width = static_cast<float>(grid_.resolution_m);  // a map cell is a column
-    out->rays.push_back(ray);
+    // Cells that the edge of the box crosses are included.
+    const std::optional<RayDown> found =
+        RayDownFrom(info_, {start, down}, projection_.start_height_m(), 0.75 * grid_.resolution_m, grid_.resolution_m);  // a map cell is a column
+    if (!found) continue;
+    out->rays.push_back(found->ray);
     out->column.push_back(column);
-    out->start_height_m.push_back(projection_.start_height_m() - s);
+    out->start_height_m.push_back(found->start_height_m);
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/gis/map_projection.h"
@@ -32,6 +33,16 @@ struct MapRays {
   std::vector<int> column;             // per ray
   std::vector<double> start_height_m;  // height where the ray begins; the surface is at start_height_m - depth
 };
+
+// The ray down a vertical line through the scene: from the top of the blocks there to their bottom, so that it does not pass space that no block was
+// trained on. line_start_height_m: height of the line's start. rim_m: how far outside the scene's box a line still counts; nothing for lines
+// farther out. width_m: of the column that the ray stands for.
+struct RayDown {
+  render::Ray ray;
+  double start_height_m = 0.0;
+};
+std::optional<RayDown> RayDownFrom(const scene::SceneInfo& info, const gis::MapProjection::VerticalLine& line, double line_start_height_m,
+                                   double rim_m, double width_m);
 
 class MapRayGenerator {
  public:

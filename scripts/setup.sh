@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages needed to build and run, except those already installed.
-#   scripts/setup.sh         everything, including tests and checks
+#   scripts/setup.sh         everything, including the Python module, tests and checks
 #   scripts/setup.sh --run   only what the program needs
 # SKYQUILT_SKIP_SETUP=1 skips it, for systems where the libraries are installed in another way.
 set -euo pipefail
@@ -12,13 +12,15 @@ run_packages=(
   libembree-dev
   libboost-dev libceres-dev libproj-dev proj-data libpugixml-dev libsqlite3-dev zlib1g-dev ffmpeg python3
 )
+# The Python module; what its recipes draw with.
+python_packages=(pybind11-dev python3-dev python3-numpy python3-matplotlib)
 test_packages=(libgtest-dev librapidcheck-dev libbenchmark-dev git clang-format clang-tidy procps iproute2 dpkg-dev file assimp-utils chromium)
 # Node from elsewhere brings its own npm, with which Debian's package conflicts.
 command -v npm >/dev/null || run_packages+=(nodejs npm)
 
 case "${1:-}" in
   --run) wanted=("${run_packages[@]}") ;;
-  "") wanted=("${run_packages[@]}" "${test_packages[@]}") ;;
+  "") wanted=("${run_packages[@]}" "${python_packages[@]}" "${test_packages[@]}") ;;
   *) echo "usage: scripts/setup.sh [--run]" >&2; exit 2 ;;
 esac
 

@@ -76,7 +76,7 @@ std::vector<uint32_t> PointViews::Seeing(const Vector3f& position, const Vector3
     n = 0;
     rays.valid.fill(0);
   };
-  thread_local std::vector<uint32_t> near;
+  std::vector<uint32_t> near;
   FindNear(point, &near);
   for (const size_t i : near) {
     const Vector3d to_camera = views_[i].centre - point;

@@ -1,11 +1,10 @@
 #include "app/commands/command.h"
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cmath>
 
+#include "app/settings/chosen_settings.h"
 #include "app/settings/duration.h"
-#include "app/settings/load_settings.h"
 #include "app/settings/memory_size.h"
 #include "app/settings/presets.h"
 #include "core/base/errors.h"
@@ -17,72 +16,27 @@ namespace skyquilt::app {
 
 namespace {
 
-// The options set by --config: those of a file, or of a preset. When a file and a preset have this name, the file is used.
-struct NamedConfig {
-  bool keeps_views = false;  // says itself what holds for photos that look level: "default" and "level"
-  bool starts_anew = false;  // "default" replaces all values of the project's own configuration
-  std::vector<std::filesystem::path> files;
-  std::vector<config::Override> overrides;
-};
-
-NamedConfig FindConfig(const std::string& config) {
-  if (config.empty()) return {};
-  // A folder with the name of a preset (for instance an output folder "fast") is not a configuration.
-  if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.files = {config}, .overrides = {}};
-  const std::vector<std::string> presets = PresetNames();
-  if (std::find(presets.begin(), presets.end(), config) == presets.end()) {
-    const std::string nearest = config::Nearest(config, presets);
-    throw base::InputError(config, "no such file, and no preset of that name",
-                           nearest.empty() ? "Give a TOML file, or one of " + base::Join(presets) : "Did you mean '" + nearest + "'?");
-  }
-  return {.keeps_views = config == "default" || config == kLevelPreset,
-          .starts_anew = config == "default",
-          .files = {},
-          .overrides = PresetOverrides(config)};
-}
-
-// What comes after files: the preset, --set, `flags` and --threads. Later ones win.
-std::vector<config::Override> OverridesOf(const CommandState& state, const NamedConfig& named, const std::vector<config::Override>& flags) {
-  std::vector<config::Override> overrides = named.overrides;
-  for (const std::string& text : state.set) overrides.push_back(config::ParseOverride(text));
-  overrides.insert(overrides.end(), flags.begin(), flags.end());
-  if (!state.threads.empty()) overrides.push_back({"run.threads", state.threads});
-  return overrides;
-}
-
-void Apply(const CommandState& state, const NamedConfig& named, const std::vector<config::Override>& flags, coordinator::Settings& settings) {
-  for (const std::filesystem::path& file : named.files) config::ReadToml(file, settings.AllSections());
-  for (const config::Override& entry : OverridesOf(state, named, flags)) settings.Set(entry);
+// --set, the command's flags and --threads after --config.
+Choice ChoiceOf(const CommandState& state, const std::vector<config::Override>& flags) {
+  Choice choice{.config = state.config};
+  for (const std::string& text : state.set) choice.overrides.push_back(config::ParseOverride(text));
+  choice.overrides.insert(choice.overrides.end(), flags.begin(), flags.end());
+  if (!state.threads.empty()) choice.overrides.push_back({"run.threads", state.threads});
+  return choice;
 }
 
 }  // namespace
 
 coordinator::Settings CommandState::Load(const std::vector<std::filesystem::path>& files, const std::vector<config::Override>& flags) const {
-  const NamedConfig named = FindConfig(config);
-  std::vector<std::filesystem::path> all_files = named.starts_anew ? std::vector<std::filesystem::path>() : files;
-  all_files.insert(all_files.end(), named.files.begin(), named.files.end());
-  return LoadSettings(all_files, OverridesOf(*this, named, flags));
+  return ChosenSettings(files, ChoiceOf(*this, flags));
 }
 
 coordinator::Settings CommandState::LoadOver(coordinator::Settings settings) const {
-  const NamedConfig named = FindConfig(config);
-  if (named.starts_anew) settings = {};
-  Apply(*this, named, {}, settings);
-  settings.Check();
-  return settings;
+  return ChosenOver(std::move(settings), ChoiceOf(*this, {}));
 }
 
 std::optional<coordinator::Settings> CommandState::LoadForLevelPhotos(const std::vector<config::Override>& flags) const {
-  const NamedConfig named = FindConfig(config);
-  if (named.keeps_views) return std::nullopt;
-  coordinator::Settings settings;
-  for (const config::Override& entry : PresetOverrides(kLevelPreset)) settings.Set(entry);
-  // What these say about old options was said by Load.
-  const base::LogLevel level = base::GetLogLevel();
-  base::SetLogLevel(base::LogLevel::kError);
-  Apply(*this, named, flags, settings);
-  base::SetLogLevel(level);
-  return settings;
+  return ChosenForLevelPhotos(ChoiceOf(*this, flags));
 }
 
 coordinator::Pipeline CommandState::Begin(const coordinator::Project& project, coordinator::Settings settings, bool restart) const {

@@ -24,29 +24,8 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   }
   coordinator::Settings settings = state.Load({}, overrides);
   // Checked before the output folder is created and before hours of work.
-  if (!flags.photos.empty() && !std::filesystem::is_directory(flags.photos)) {
-    throw base::InputError(flags.photos, "no such folder", "Give the folder that holds the photos");
-  }
-  if (!flags.model.empty() && !std::filesystem::exists(flags.model)) {
-    throw base::InputError(flags.model, "no such folder or file", "Give the camera model of the photos, or leave --model out to run COLMAP");
-  }
+  coordinator::RequireInputs(settings, flags.photos, flags.model);
   if (coordinator::StageNamed("tour").wanted(settings)) viewer::TourPage(state.front_end);
-  settings.evaluate.RequireFiles();
-  if (const std::string& boundary = settings.products.boundary; !boundary.empty() && !std::filesystem::is_regular_file(boundary)) {
-    throw base::InputError(boundary, "no such file", "Give a GeoJSON or GeoPackage file as products.boundary, or leave it empty");
-  }
-  if (const std::string& footprints = settings.buildings.footprints;
-      coordinator::StageNamed("buildings").wanted(settings) && !footprints.empty() && !std::filesystem::is_regular_file(footprints)) {
-    throw base::InputError(footprints, "no such file", "Give a file with outlines as buildings.footprints, or leave it empty to find buildings");
-  }
-  if (const std::string& masks = settings.prepare.masks; !masks.empty() && masks != "none" && !std::filesystem::exists(masks)) {
-    throw base::InputError(masks, "no such folder", "Give the folder of the masks, or one mask for all photos, as prepare.masks, or leave it empty");
-  }
-  for (const std::string* file : {&settings.prepare.gcp, &settings.prepare.gcp_marks}) {
-    if (!file->empty() && !std::filesystem::is_regular_file(*file)) {
-      throw base::InputError(*file, "no such file", "Give the file of the control points or of their marks, or leave the option empty");
-    }
-  }
   coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
   pipeline.level_settings = state.LoadForLevelPhotos(overrides);
   coordinator::UseTotalTime(pipeline);

@@ -69,6 +69,31 @@ const evaluate::metrics::Metrics& EvaluateStage(Pipeline& pipeline) {
   return pipeline.metrics;
 }
 
+void RequireInputs(const Settings& settings, const std::filesystem::path& photos, const std::filesystem::path& model) {
+  if (!photos.empty() && !std::filesystem::is_directory(photos)) {
+    throw base::InputError(photos, "no such folder", "Give the folder that holds the photos");
+  }
+  if (!model.empty() && !std::filesystem::exists(model)) {
+    throw base::InputError(model, "no such folder or file", "Give the camera model of the photos, or leave --model out to run COLMAP");
+  }
+  settings.evaluate.RequireFiles();
+  if (const std::string& boundary = settings.products.boundary; !boundary.empty() && !std::filesystem::is_regular_file(boundary)) {
+    throw base::InputError(boundary, "no such file", "Give a GeoJSON or GeoPackage file as products.boundary, or leave it empty");
+  }
+  if (const std::string& footprints = settings.buildings.footprints;
+      StageNamed("buildings").wanted(settings) && !footprints.empty() && !std::filesystem::is_regular_file(footprints)) {
+    throw base::InputError(footprints, "no such file", "Give a file with outlines as buildings.footprints, or leave it empty to find buildings");
+  }
+  if (const std::string& masks = settings.prepare.masks; !masks.empty() && masks != "none" && !std::filesystem::exists(masks)) {
+    throw base::InputError(masks, "no such folder", "Give the folder of the masks, or one mask for all photos, as prepare.masks, or leave it empty");
+  }
+  for (const std::string* file : {&settings.prepare.gcp, &settings.prepare.gcp_marks}) {
+    if (!file->empty() && !std::filesystem::is_regular_file(*file)) {
+      throw base::InputError(*file, "no such file", "Give the file of the control points or of their marks, or leave the option empty");
+    }
+  }
+}
+
 void RunStages(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model) {
   const std::filesystem::path folder = photos.empty() ? pipeline.project.SimulatedFolder() : photos;
   products::ProductKinds kinds;

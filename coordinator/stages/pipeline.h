@@ -76,6 +76,9 @@ struct TourRequest {
 // that a person made.
 void ExportProjectTour(Pipeline& pipeline, const TourRequest& request);
 const evaluate::metrics::Metrics& EvaluateStage(Pipeline& pipeline);
+// Files and folders that a run of all stages will read: photos (empty: a survey is simulated), model (empty: none), and what options name. Throws
+// base::InputError for one that is not there, so that it is found before hours of work.
+void RequireInputs(const Settings& settings, const std::filesystem::path& photos, const std::filesystem::path& model);
 // `run`: all stages that the settings ask for. photos may be empty: a survey is simulated, in the project's folder.
 void RunStages(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model);
 

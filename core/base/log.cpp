@@ -1,12 +1,14 @@
 #include "core/base/log.h"
 
 #include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/dist_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <memory>
 
 #include "core/base/errors.h"
+#include "core/base/log_file.h"
 #include "core/base/progress.h"
 
 namespace skyquilt::base {
@@ -19,6 +21,19 @@ class StderrSink : public spdlog::sinks::stderr_color_sink_mt {
     spdlog::sinks::stderr_color_sink_mt::log(message);
   }
 };
+
+// The log files: a sink to which others may be added while messages are written.
+using Files = spdlog::sinks::dist_sink_mt;
+
+std::shared_ptr<Files>& FilesOfLog() {
+  static std::shared_ptr<Files> files = [] {
+    // Until InitLog makes a logger of ours.
+    auto of_default_logger = std::make_shared<Files>();
+    spdlog::default_logger()->sinks().push_back(of_default_logger);
+    return of_default_logger;
+  }();
+  return files;
+}
 
 // The prefix is stored as the logger's name (%n).
 std::string Pattern(const std::string& time, bool with_name) {
@@ -44,21 +59,42 @@ spdlog::level::level_enum SpdlogLevel(LogLevel level) {
 void InitLog(bool verbose, const std::string& prefix) {
   const auto sink = std::make_shared<StderrSink>();
   sink->set_pattern(Pattern("%H:%M:%S", !prefix.empty()));
-  const auto logger = std::make_shared<spdlog::logger>(prefix, sink);
+  FilesOfLog() = std::make_shared<Files>();
+  const auto logger = std::make_shared<spdlog::logger>(prefix, spdlog::sinks_init_list{sink, FilesOfLog()});
   logger->set_level(verbose ? spdlog::level::debug : spdlog::level::info);
   logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(logger);
 }
 
-void AddLogFile(const std::filesystem::path& file) {
-  const std::shared_ptr<spdlog::logger> logger = spdlog::default_logger();
+namespace {
+
+std::shared_ptr<spdlog::sinks::sink> OpenLogFile(const std::filesystem::path& file) {
   try {
     const auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string(), false);
-    sink->set_pattern(Pattern("%Y-%m-%d %H:%M:%S", !logger->name().empty()));
-    logger->sinks().push_back(sink);
+    sink->set_pattern(Pattern("%Y-%m-%d %H:%M:%S", !spdlog::default_logger()->name().empty()));
+    return sink;
   } catch (const spdlog::spdlog_ex& error) {
     throw InputError(file, std::string("cannot open the log: ") + error.what(), "Choose an output folder with write permission (-o)");
   }
+}
+
+}  // namespace
+
+void AddLogFile(const std::filesystem::path& file) {
+  FilesOfLog()->add_sink(OpenLogFile(file));
+}
+
+struct LogFile::State {
+  std::shared_ptr<Files> files;
+  std::shared_ptr<spdlog::sinks::sink> sink;
+};
+
+LogFile::LogFile(const std::filesystem::path& file) : state_(std::make_unique<State>(State{FilesOfLog(), OpenLogFile(file)})) {
+  state_->files->add_sink(state_->sink);
+}
+
+LogFile::~LogFile() {
+  state_->files->remove_sink(state_->sink);
 }
 
 LogLevel GetLogLevel() {

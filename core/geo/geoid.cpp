@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -16,7 +17,6 @@ namespace {
 
 constexpr const char* kGrid = "egm96_15.gtx";
 
-// PROJ's objects must not be shared between threads.
 struct GridShift {
   ProjContext context = QuietProjContext();
   ProjObject shift;
@@ -38,7 +38,10 @@ struct GridShift {
 double Egm96Undulation(double latitude_deg, double longitude_deg) {
   if (!IsValid({latitude_deg, longitude_deg, 0.0}))
     throw std::invalid_argument("a geoid height needs finite coordinates and a latitude in [-90, 90]");
-  static thread_local std::unique_ptr<GridShift> grid;
+  // PROJ's objects are for one thread at a time.
+  static std::mutex one_at_a_time;
+  static std::unique_ptr<GridShift> grid;
+  const std::lock_guard lock(one_at_a_time);
   if (!grid) grid = std::make_unique<GridShift>();
   if (!grid->shift) {
     grid.reset();

@@ -23,7 +23,11 @@ struct Way {
 }  // namespace
 
 PagedRenderer::PagedRenderer(FieldStore& store, const render::RaySegments& segments, base::ThreadPool& threads)
-    : store_(store), segments_(segments), threads_(threads), splitters_(static_cast<size_t>(threads.size()), render::RaySplitter(segments)) {}
+    : store_(store),
+      segments_(segments),
+      threads_(threads),
+      splitters_(static_cast<size_t>(threads.size()), render::RaySplitter(segments)),
+      some_(static_cast<size_t>(threads.size())) {}
 
 void PagedRenderer::ForGroups(size_t n, const std::function<void(size_t begin, size_t end, int thread)>& body) {
   const int64_t each = (static_cast<int64_t>(n) + threads_.size() - 1) / threads_.size();
@@ -51,8 +55,7 @@ int64_t PagedRenderer::Carry(std::span<const render::Ray> rays, std::span<RayInF
   ForGroups(going.size(), [&](size_t begin, size_t end, int thread) {
     auto& renderer = renderers_[static_cast<size_t>(thread)];
     if (!renderer) renderer = std::make_unique<render::RayRenderer>(fields, options);
-    thread_local std::vector<render::Ray> some;
-    thread_local std::vector<render::RayState> states;
+    auto& [some, states] = some_[static_cast<size_t>(thread)];
     some.clear();
     states.clear();
     for (size_t g = begin; g < end; ++g) {

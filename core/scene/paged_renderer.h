@@ -46,6 +46,12 @@ class PagedRenderer {
   const render::RaySegments& segments_;
   base::ThreadPool& threads_;
   std::vector<render::RaySplitter> splitters_;  // one per thread
+  // Workspace of a thread: some of the rays of a call.
+  struct Some {
+    std::vector<render::Ray> rays;
+    std::vector<render::RayState> states;
+  };
+  std::vector<Some> some_;  // one per thread
   // One per thread, kept while the loaded fields and the options stay the same.
   std::vector<std::unique_ptr<render::RayRenderer>> renderers_;
   int64_t renderers_loads_ = -1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "core/base/errors.h"
 #include "core/checkpoint/archive.h"
@@ -15,6 +16,7 @@
 #include "core/scene/field_file.h"
 #include "core/scene/field_store.h"
 #include "core/scene/paged_renderer.h"
+#include "core/scene/point_query.h"
 #include "core/scene/ray_service.h"
 #include "core/scene/scene_file.h"
 
@@ -90,7 +92,8 @@ struct Scene::Impl {
   Background background;
   std::unique_ptr<FieldStore> store;
   std::unique_ptr<render::RaySegments> segments;
-  std::unique_ptr<PagedRenderer> pager;  // for pager_threads
+  std::optional<render::GroundIndex> ground;  // of the blocks; made for the first query
+  std::unique_ptr<PagedRenderer> pager;       // for pager_threads
   const base::ThreadPool* pager_threads = nullptr;
   RayService* service = nullptr;
   RenderStatistics statistics;
@@ -217,6 +220,13 @@ std::vector<render::RayColor> Scene::RenderCamera(const camera::Camera& camera, 
     for (size_t i = 0; i < pixels.size(); ++i) out[pixels[i]] = colors[i];
   }
   return out;
+}
+
+void Scene::QueryPoints(std::span<const Eigen::Vector3d> x_in_enu, std::span<const Eigen::Vector3d> direction_enu, const PointOptions& options,
+                        std::span<PointColor> out, base::ThreadPool& threads) const {
+  SKYQUILT_CHECK(impl_->service == nullptr, "a service renders rays only");
+  if (!impl_->ground) impl_->ground.emplace(impl_->store->Blocks());
+  scene::QueryPoints(*impl_->store, *impl_->ground, x_in_enu, direction_enu, options, out, threads);
 }
 
 }  // namespace skyquilt::scene

@@ -93,6 +93,8 @@ struct RenderStatistics {
 };
 
 class RayService;
+struct PointColor;
+struct PointOptions;
 
 struct SceneOptions {
   double memory_bytes = 0.0;      // limit for the fields in memory; those that do not fit are loaded on demand; 0: no limit
@@ -118,6 +120,9 @@ class Scene {
   // All pixels of a camera, row-major, width * height results, over the background. See core/scene/camera_rays.h for some pixels.
   std::vector<render::RayColor> RenderCamera(const camera::Camera& camera, const geo::Rigid3d& cam_from_enu, const Appearance& appearance,
                                              base::ThreadPool& threads) const;
+  // Density and colour at points, see core/scene/point_query.h. Not with a service, which renders rays only.
+  void QueryPoints(std::span<const Eigen::Vector3d> x_in_enu, std::span<const Eigen::Vector3d> direction_enu, const PointOptions& options,
+                   std::span<PointColor> out, base::ThreadPool& threads) const;
 
  private:
   Scene();

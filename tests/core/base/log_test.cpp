@@ -4,6 +4,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/log_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::base {
@@ -28,6 +29,28 @@ TEST(Log, FileReceivesLaterMessages) {
   EXPECT_NE(shown.find("too early"), std::string::npos);
   EXPECT_NE(shown.find("in both"), std::string::npos);
   EXPECT_EQ((shown + kept).find("hidden"), std::string::npos);
+}
+
+TEST(Log, FileOfOneProjectDoesNotReceiveTheNext) {
+  const TemporaryFolder folder;
+  testing::internal::CaptureStderr();
+  InitLog(false);
+  {
+    const LogFile first(folder.path() / "first.txt");
+    LogInfo("of the first");
+  }
+  {
+    const LogFile second(folder.path() / "second.txt");
+    LogInfo("of the second");
+  }
+  LogInfo("of none");
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("of none"), std::string::npos);
+  const std::string first = ReadFile(folder.path() / "first.txt"), second = ReadFile(folder.path() / "second.txt");
+  EXPECT_NE(first.find("of the first"), std::string::npos) << first;
+  EXPECT_NE(second.find("of the second"), std::string::npos) << second;
+  EXPECT_EQ(first.find("of the second"), std::string::npos) << first;
+  EXPECT_EQ(second.find("of none"), std::string::npos) << second;
+  EXPECT_THROW(LogFile{folder.path()}, InputError);
 }
 
 TEST(Log, FormatsWhatItsLevelLetsThrough) {

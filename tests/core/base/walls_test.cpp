@@ -26,6 +26,9 @@ const Arrows& AllowedIncludes() {
         {"app",
          {"bench", "viewer", "odm", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "tour",
           "evaluate", "core"}},
+        // Of app only settings/, which says what options a person chose.
+        {"python",
+         {"app", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate", "core"}},
         {"bench", {"coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate", "core"}},
         {"viewer", {"coordinator", "prepare", "partition", "products", "surface", "buildings", "tour", "core"}},
         {"coordinator", {"simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "tour", "evaluate", "core"}},
@@ -119,6 +122,7 @@ const std::vector<Library>& Libraries() {
       {"Ceres", std::regex("ceres/.*"), {"prepare", "buildings"}, {"ceres/ceres.h"}},
       {"SQLite", std::regex("sqlite3(ext)?\\.h"), {"core/survey"}, {"sqlite3.h"}},
       {"zlib", std::regex("zlib\\.h"), {"core/base"}, {"zlib.h"}},
+      {"pybind11", std::regex("pybind11/.*|Python\\.h|numpy/.*"), {"python"}, {"pybind11/pybind11.h", "pybind11/stl.h"}},
       {"toml++", std::regex("toml\\+\\+/.*|toml\\.hpp"), {"core/config"}, {"toml++/toml.h"}},
   };
   return libraries;
@@ -166,6 +170,7 @@ std::string Violation(const std::string& file, const std::string& header) {
   if (allowed == AllowedIncludes().end()) return room + " is not a room of AllowedIncludes";
   const std::string other = RoomOf(header);
   if (other == room) return InnerViolation(file, header);
+  if (room == "python" && other == "app" && !header.starts_with("app/settings/")) return "python may include only app/settings";
   if (allowed->second.contains(other)) return "";
   if (other.starts_with("core/") && allowed->second.contains("core") && AllowedIncludes().contains(other)) return "";
   return room + " may not include " + other;
@@ -359,6 +364,15 @@ TEST(Rooms, CostlyTemplatesAreUsedInOneFile) {
   EXPECT_EQ(users, kMay) << "files that need no exception any more";
 }
 
+// The Python module is a shared library of code for programs (cmake/SkyquiltPython.cmake), in which thread-local variables do not fit: its linker
+// would refuse them with "unsupported reloc". What a thread needs of its own goes into a list by the thread's number, which base::ThreadPool gives.
+TEST(Rooms, OfThePythonModuleHaveNoThreadLocalVariables) {
+  static const std::set<std::string> kNotInside = {"app", "bench", "odm", "viewer"};
+  for (const auto& [file, lines] : FilesWith({"thread_local"}, std::regex("\\bthread_local\\b"))) {
+    EXPECT_TRUE(kNotInside.contains(RoomOf(file))) << file << ": " << lines;
+  }
+}
+
 // So that one place decides what is synced, and what a message says, when a file gets its name.
 TEST(Rooms, FilesAreRenamedInOneFile) {
   std::set<std::string> users;
@@ -396,6 +410,8 @@ TEST(Rooms, ForbiddenIncludesAreFound) {
       {"partition/a.cpp", {"worker/trainer.h"}},
       {"coordinator/stages/a.cpp", {"bench/bench_page.h", "viewer/tour_parts.h"}},
       {"bench/a.cpp", {"app/commands/cli.h"}},
+      {"python/a.cpp", {"app/commands/command.h", "viewer/tour_parts.h", "tour/format/tour.h", "bench/bench_page.h"}},
+      {"app/commands/a.cpp", {"python/open_scene.h"}},
       {"surface/mesh/a.cpp", {"products/map_rays.h"}},
       {"tour/format/a.cpp", {"viewer/data/project_data.h"}},
       {"evaluate/photos/a.cpp", {"evaluate/metrics/metrics.h"}},

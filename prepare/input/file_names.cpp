@@ -85,7 +85,7 @@ std::string HowToConvert(FileGroup group) {
       return "Develop them to JPEG or TIFF with one setting for all, for instance with 'darktable-cli X.DNG X.jpg' or 'rawtherapee-cli -c FOLDER', "
              "which keep their tags";
     case FileGroup::kVideo:
-      return "Take single frames, for instance one per second with 'ffmpeg -i X.MP4 -vf fps=1 -q:v 2 frames/%05d.jpg'; they have no GPS tags";
+      return "Frames are taken from videos that are given as such, 'skyquilt prepare X.MP4 -o DIR', or in a folder without photos";
     case FileGroup::kOtherPicture:
       return "Convert them to JPEG, PNG or TIFF, for instance with ImageMagick's 'convert'";
     case FileGroup::kPicture:

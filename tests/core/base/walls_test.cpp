@@ -72,6 +72,7 @@ const std::map<std::string, InnerRoom>& InnerRooms() {
             {"poses", {"input", "bundle"}},
             {"control", {"input", "models", "tables", "bundle"}},
             {"georeference", {"control", "poses", "input", "models", "tables", "bundle"}},
+            {"video", {"input", "tables"}},
         },
         {}}},
       {"evaluate",

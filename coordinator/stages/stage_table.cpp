@@ -62,6 +62,8 @@ FlatOptions PrepareInputs(const Pipeline& pipeline) {
   FlatOptions inputs{{"photos", pipeline.photos.string()}, {"model", pipeline.model.string()}};
   if (pipeline.videos.empty()) {
     inputs["images"] = PhotosIdentity(pipeline.photos, pipeline.project.folder);
+    const std::string developed = DevelopedIdentity(pipeline.photos, pipeline.project.folder);
+    if (!developed.empty()) inputs["HEIC and raw"] = developed;
   } else {
     // Their frames are a result.
     inputs["videos"] = base::HashHex(prepare::video::VideosIdentity(pipeline.videos));

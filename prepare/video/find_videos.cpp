@@ -6,6 +6,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/text.h"
+#include "core/image/develop.h"
 #include "prepare/input/file_names.h"
 #include "prepare/input/list_files.h"
 #include "prepare/input/walk_folder.h"
@@ -28,7 +29,7 @@ std::vector<fs::path> VideosOfFolder(const fs::path& folder) {
   for (const input::FoundFile& file : input::WalkFolder(folder, {}, {})) {
     const bool own = file.in == input::FoundIn::kPlainFolder || file.in == input::FoundIn::kProjectImages;
     if (!own || input::IsHiddenName(fs::path(file.name).filename().string())) continue;
-    if (input::LooksLikePhoto(file.name)) return {};
+    if (input::LooksLikePhoto(file.name) || image::NeedsDeveloping(file.name)) return {};
     if (IsFilm(file.name)) videos.push_back(folder / file.name);
   }
   return videos;

@@ -113,6 +113,8 @@ const std::vector<Library>& Libraries() {
        std::regex("opencv2/(imgcodecs|highgui)(\\.hpp|/.*)|opencv2/opencv\\.hpp"),
        {"core/image"},
        {"opencv2/imgcodecs.hpp", "opencv2/opencv.hpp"}},
+      {"libheif", std::regex("libheif/.*"), {"core/image"}, {"libheif/heif.h"}},
+      {"LibRaw", std::regex("libraw/.*"), {"core/image"}, {"libraw/libraw.h"}},
       {"Exiv2", std::regex("exiv2/.*"), {"core/survey"}, {"exiv2/exiv2.hpp"}},
       {"Embree", std::regex("embree[0-9]*/.*"), {"core/raytrace"}, {"embree3/rtcore.h"}},
       {"GDAL", std::regex("(gdal/)?(gdal|ogr_|ogrsf|cpl_|vrt)[^/]*\\.h"), {"core/gis"}, {"gdal_priv.h", "gdal/ogr_spatialref.h"}},

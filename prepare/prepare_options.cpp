@@ -121,10 +121,7 @@ georeference::PlaceOptions PlaceOptionsOf(const PrepareOptions& options) {
 }
 
 video::VideoOptions VideoOptionsOf(const PrepareOptions& options) {
-  return {.overlap = options.video_overlap,
-          .limit = options.video_limit,
-          .size = options.video_size,
-          .clock_offset_s = options.video_clock_offset_s};
+  return {.overlap = options.video_overlap, .limit = options.video_limit, .size = options.video_size, .clock_offset_s = options.video_clock_offset_s};
 }
 
 }  // namespace skyquilt::prepare

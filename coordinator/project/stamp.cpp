@@ -48,7 +48,8 @@ std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folde
 std::string LineOf(const std::filesystem::path& file, const std::filesystem::path& folder) {
   std::error_code error;
   const auto time = std::chrono::duration_cast<std::chrono::seconds>(std::filesystem::last_write_time(file, error).time_since_epoch()).count();
-  return file.lexically_relative(folder).generic_string() + "|" + std::to_string(std::filesystem::file_size(file, error)) + "|" + std::to_string(time);
+  return file.lexically_relative(folder).generic_string() + "|" + std::to_string(std::filesystem::file_size(file, error)) + "|" +
+         std::to_string(time);
 }
 
 std::string IdentityOf(std::vector<std::string> lines) {

@@ -12,6 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/thread_pool.h"
+#include "core/image/video_writer.h"
 #include "core/scene/scene.h"
 #include "core/survey/view_kind.h"
 #include "evaluate/evaluate.h"
@@ -23,7 +24,6 @@
 #include "products/elevation.h"
 #include "products/map_products.h"
 #include "products/render_views.h"
-#include "core/image/video_writer.h"
 #include "simulate/simulate.h"
 
 namespace skyquilt::coordinator {
@@ -71,7 +71,8 @@ std::string SimulateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 }
 
 std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
-  const prepare::PrepareInput input{.photos = pipeline.photos, .model = pipeline.model, .out_folder = pipeline.project.SurveyFolder(), .videos = pipeline.videos};
+  const prepare::PrepareInput input{
+      .photos = pipeline.photos, .model = pipeline.model, .out_folder = pipeline.project.SurveyFolder(), .videos = pipeline.videos};
   base::ThreadPool threads(pipeline.settings.run.threads);
   RankTasks ranks(pipeline.comm, pipeline.settings.run, pipeline.project.folder, pipeline.verbose, pipeline.quiet);
   const auto show = [&](const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known) {

@@ -52,7 +52,8 @@ std::string MasksIdentity(const Pipeline& pipeline) {
 
 // They matter to videos alone: records of surveys of photos do without.
 const std::vector<std::string>& VideoOptionNames() {
-  static const std::vector<std::string> names = {"prepare.video_overlap", "prepare.video_limit", "prepare.video_size", "prepare.video_clock_offset_s"};
+  static const std::vector<std::string> names = {"prepare.video_overlap", "prepare.video_limit", "prepare.video_size",
+                                                 "prepare.video_clock_offset_s"};
   return names;
 }
 

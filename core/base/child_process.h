@@ -56,7 +56,8 @@ class ChildProcess {
   // Its output (stdout and stderr) is read with Receive, its input is empty. It leads a process group of its own, so that the processes it starts are
   // ended with it. Throws StartError.
   static ChildProcess StartReading(const Command& command);
-  // The same, but stdout and stderr are read apart, with ReceiveBoth: for programs that write data to one and messages to the other. Throws StartError.
+  // The same, but stdout and stderr are read apart, with ReceiveBoth: for programs that write data to one and messages to the other. Throws
+  // StartError.
   static ChildProcess StartReadingBoth(const Command& command);
   // Its input is written with Send, its output goes where our own goes. It stays in our process group: a signal from the terminal (Ctrl-C) reaches it
   // too. Throws StartError.

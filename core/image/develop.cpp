@@ -114,7 +114,7 @@ class RawPhoto {
     Check(raw_->dcraw_process());
     int status = LIBRAW_SUCCESS;
     const std::unique_ptr<libraw_processed_image_t, decltype(&LibRaw::dcraw_clear_mem)> picture(raw_->dcraw_make_mem_image(&status),
-                                                                                               LibRaw::dcraw_clear_mem);
+                                                                                                LibRaw::dcraw_clear_mem);
     Check(status);
     const bool usable = picture && picture->type == LIBRAW_IMAGE_BITMAP && picture->bits == 8 && (picture->colors == 3 || picture->colors == 1);
     if (!usable) throw base::InputError(file_, "is developed to a picture of another kind than RGB of 8 bits", kFixCopy);
@@ -147,8 +147,8 @@ void RequireContent(const fs::path& file) {
 }  // namespace
 
 bool NeedsDeveloping(const std::string& file_name) {
-  static constexpr std::array<std::string_view, 12> kRaw = {".dng", ".cr2", ".cr3", ".nef", ".nrw", ".arw", ".sr2", ".raf", ".orf", ".rw2", ".pef",
-                                                            ".srw"};
+  static constexpr std::array<std::string_view, 12> kRaw = {".dng", ".cr2", ".cr3", ".nef", ".nrw", ".arw",
+                                                            ".sr2", ".raf", ".orf", ".rw2", ".pef", ".srw"};
   return IsHeif(file_name) || HasOneOf(file_name, kRaw);
 }
 

@@ -79,7 +79,8 @@ std::string GroupName(FileGroup group) {
 std::string HowToConvert(FileGroup group) {
   switch (group) {
     case FileGroup::kRaw:
-      return "Of other raw formats than DNG, CR2, CR3, NEF, ARW, RAF, ORF, RW2, PEF and SRW none is read. Develop them to JPEG or TIFF with one setting for all, for instance with 'darktable-cli X.DNG X.jpg' or 'rawtherapee-cli -c FOLDER', "
+      return "Of other raw formats than DNG, CR2, CR3, NEF, ARW, RAF, ORF, RW2, PEF and SRW none is read. Develop them to JPEG or TIFF with one "
+             "setting for all, for instance with 'darktable-cli X.DNG X.jpg' or 'rawtherapee-cli -c FOLDER', "
              "which keep their tags";
     case FileGroup::kVideo:
       return "Frames are taken from videos that are given as such, 'skyquilt prepare X.MP4 -o DIR', or in a folder without photos";

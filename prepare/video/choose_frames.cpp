@@ -30,9 +30,7 @@ class FrameChooser {
 
  private:
   bool Sharper(size_t i, size_t than) const { return candidates_[i].sharpness > candidates_[than].sharpness; }
-  double ShareOf(size_t from, size_t to) const {
-    return NewShare(candidates_[from].from_first.Inverse().Then(candidates_[to].from_first), aspect_);
-  }
+  double ShareOf(size_t from, size_t to) const { return NewShare(candidates_[from].from_first.Inverse().Then(candidates_[to].from_first), aspect_); }
   bool SameSection(size_t i, size_t j) const { return j < candidates_.size() && candidates_[i].section == candidates_[j].section; }
 
   void AddFirst(size_t begin, FrameReason reason) {

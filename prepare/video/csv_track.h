@@ -1,11 +1,11 @@
-// Reads a flight log in CSV: a heading, and a row per moment. Columns are found by their names, of which these are known, in any case and with a unit in
-// brackets behind them (feet, ft, milliseconds, ms, mph):
+// Reads a flight log in CSV: a heading, and a row per moment. Columns are found by their names, of which these are known, in any case and with a unit
+// in brackets behind them (feet, ft, milliseconds, ms, mph):
 //   time                time, time_s, seconds, t, timestamp, time(millisecond): since the beginning of the video, or of the flight with `isvideo`;
 //                       datetime, datetime(utc), date: UTC
 //   latitude, lat; longitude, lon, lng
-//   height              height_above_takeoff, relative_altitude, rel_alt, height, agl;  altitude_above_sealevel, abs_alt, altitude, alt, ele, elevation
-//   gimbal              gimbal_heading, gimbal_yaw, gb_yaw, yaw; gimbal_pitch, gb_pitch, pitch; gimbal_roll, gb_roll, roll
-//   isvideo             1 while the drone filmed (AirData): the time then begins anew with each recording
+//   height              height_above_takeoff, relative_altitude, rel_alt, height, agl;  altitude_above_sealevel, abs_alt, altitude, alt, ele,
+//   elevation gimbal              gimbal_heading, gimbal_yaw, gb_yaw, yaw; gimbal_pitch, gb_pitch, pitch; gimbal_roll, gb_roll, roll isvideo 1 while
+//   the drone filmed (AirData): the time then begins anew with each recording
 #pragma once
 
 #include <filesystem>

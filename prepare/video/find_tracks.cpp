@@ -38,9 +38,10 @@ bool MoveToVideo(const VideoInfo& info, double clock_offset_s, FlightTrack& trac
   const double log_begin_s = track.points.front().time_s, log_end_s = track.points.back().time_s;
   const std::optional<double> shift_s = ClockShift(begin_s, duration_s, log_begin_s, log_end_s);
   if (!shift_s) {
-    base::LogWarning("{}: not used, because it covers none or little of the video, which begins {:.0f} s after it; set prepare.video_clock_offset_s "
-                     "where the camera's clock was wrong",
-                     track.file.string(), begin_s - log_begin_s);
+    base::LogWarning(
+        "{}: not used, because it covers none or little of the video, which begins {:.0f} s after it; set prepare.video_clock_offset_s "
+        "where the camera's clock was wrong",
+        track.file.string(), begin_s - log_begin_s);
     return false;
   }
   if (*shift_s != 0.0) {
@@ -75,8 +76,11 @@ std::vector<FlightTrack> ReadTracks(const fs::path& file, const VideoInfo& info)
 
 // ffmpeg writes subtitles of any form as SRT.
 FlightTrack EmbeddedSubtitles(const fs::path& video) {
-  const ProgramOutput text = RunMediaProgram(
-      "ffmpeg", {"-hide_banner", "-nostdin", "-nostats", "-loglevel", "error", "-i", FileArgument(video), "-map", "0:s:0", "-f", "srt", "pipe:1"}, video);
+  std::vector<std::string> arguments = {"-hide_banner", "-nostdin", "-nostats", "-loglevel", "error"};
+  const std::vector<std::string> input = InputArguments(video);
+  arguments.insert(arguments.end(), input.begin(), input.end());
+  arguments.insert(arguments.end(), {"-map", "0:s:0", "-f", "srt", "pipe:1"});
+  const ProgramOutput text = RunMediaProgram("ffmpeg", arguments, video);
   std::istringstream in(text.output);
   return ParseSubtitles(in, video);
 }

@@ -10,7 +10,7 @@ namespace skyquilt::prepare::video {
 
 // Where a point of one frame is in another: scaled, turned and shifted. In shares of the frame's width, from its middle, x right and y down.
 struct FrameShift {
-  double a = 1.0, b = 0.0;            // scale times cosine and sine of the turn
+  double a = 1.0, b = 0.0;  // scale times cosine and sine of the turn
   double right = 0.0, down = 0.0;
 
   FrameShift Then(const FrameShift& next) const;  // of both, one after the other
@@ -24,8 +24,8 @@ double NewShare(const FrameShift& shift, double aspect);
 
 struct TrackedShift {
   FrameShift shift;
-  int n_corners = 0;  // that were looked for
-  int n_agreeing = 0; // of them, those that moved like `shift`
+  int n_corners = 0;   // that were looked for
+  int n_agreeing = 0;  // of them, those that moved like `shift`
 };
 
 // Tracks from frame to frame; keeps only the last one. Not thread-safe.

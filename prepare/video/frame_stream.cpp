@@ -37,16 +37,18 @@ base::ChildProcess StartDecoding(const FrameRequest& request, double offset_s) {
   std::vector<std::string> arguments = {"-hide_banner", "-nostdin", "-nostats", "-loglevel", "info"};
   if (request.key_frames_only) arguments.insert(arguments.end(), {"-skip_frame", "nokey"});
   if (offset_s > 0.0) arguments.insert(arguments.end(), {"-ss", fmt::format("{:.6f}", offset_s)});
+  const std::vector<std::string> input = InputArguments(request.video);
+  arguments.insert(arguments.end(), input.begin(), input.end());
   // V: the first video that is no still picture such as a cover.
-  arguments.insert(arguments.end(), {"-i", FileArgument(request.video), "-map", "0:V:0", "-an", "-sn", "-dn", "-vf", FilterOf(request, offset_s),
-                                     "-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", request.grey ? "gray" : "rgb24", "pipe:1"});
+  arguments.insert(arguments.end(), {"-map", "0:V:0", "-an", "-sn", "-dn", "-vf", FilterOf(request, offset_s), "-fps_mode", "passthrough", "-f",
+                                     "rawvideo", "-pix_fmt", request.grey ? "gray" : "rgb24", "pipe:1"});
   return StartMediaProgram("ffmpeg", arguments, request.video);
 }
 
 // Decoding begins a little before the first frame that is wanted, and times count from there.
 double OffsetOf(const FrameRequest& request) {
   constexpr double kEarlier_s = 0.5;
-  return request.spans.empty() ? 0.0 : std::max(0.0, request.spans.front().from_s - kEarlier_s);
+  return request.spans.empty() || !request.skip_to_spans ? 0.0 : std::max(0.0, request.spans.front().from_s - kEarlier_s);
 }
 
 // The number behind a name in a line of showinfo.
@@ -57,8 +59,7 @@ std::optional<double> NumberIn(const std::string& line, const std::string& name)
 
 }  // namespace
 
-FrameStream::FrameStream(const FrameRequest& request)
-    : request_(request), offset_s_(OffsetOf(request)), ffmpeg_(StartDecoding(request, offset_s_)) {
+FrameStream::FrameStream(const FrameRequest& request) : request_(request), offset_s_(OffsetOf(request)), ffmpeg_(StartDecoding(request, offset_s_)) {
   SKYQUILT_CHECK(request.width > 0 && request.height > 0, std::to_string(request.width) + " x " + std::to_string(request.height));
 }
 

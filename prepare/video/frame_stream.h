@@ -16,12 +16,13 @@ struct TimeSpan {
 
 struct FrameRequest {
   std::filesystem::path video;
-  int width = 0, height = 0;        // of the frames that are given out; the video is scaled to it. Upright
-  bool grey = false;                // one channel instead of RGB
-  bool deinterlace = false;         //
-  bool key_frames_only = false;     // those that are decoded alone: about one per second, at a tenth of the time
-  double step_s = 0.0;              // the first frame, and then the next that is this much later; 0: every frame
-  std::vector<TimeSpan> spans = {}; // if not empty: only frames within these, and those before the first are skipped fast
+  int width = 0, height = 0;         // of the frames that are given out; the video is scaled to it. Upright
+  bool grey = false;                 // one channel instead of RGB
+  bool deinterlace = false;          //
+  bool key_frames_only = false;      // those that are decoded alone: about one per second, at a tenth of the time
+  double step_s = 0.0;               // the first frame, and then the next that is this much later; 0: every frame
+  std::vector<TimeSpan> spans = {};  // if not empty: only frames within these
+  bool skip_to_spans = true;         // fast to the first of them; else all before it is decoded
 };
 
 struct VideoFrame {

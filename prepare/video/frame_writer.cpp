@@ -42,7 +42,8 @@ std::set<std::string> WriteFrames(const fs::path& video, const VideoInfo& info, 
   FrameRequest request{.video = video,
                        .width = std::max(1, static_cast<int>(std::lround(scale * info.width))),
                        .height = std::max(1, static_cast<int>(std::lround(scale * info.height))),
-                       .deinterlace = interlaced};
+                       .deinterlace = interlaced,
+                       .skip_to_spans = info.has_index};
   // Nearer to the frame than to its neighbours.
   const double reach_s = 0.4 / std::clamp(info.frames_per_s > 0.0 ? info.frames_per_s : 30.0, 1.0, 240.0);
   std::set<std::string> missing;
@@ -50,7 +51,8 @@ std::set<std::string> WriteFrames(const fs::path& video, const VideoInfo& info, 
                           static_cast<double>(frames.size() - wanted.size()));
   for (size_t begin = 0; begin < wanted.size();) {
     size_t end = begin + 1;
-    while (end < wanted.size() && end - begin < kMostOfOneStart && wanted[end]->file_time_s - wanted[end - 1]->file_time_s < kLongestGap_s) ++end;
+    const auto near = [&] { return end - begin < kMostOfOneStart && wanted[end]->file_time_s - wanted[end - 1]->file_time_s < kLongestGap_s; };
+    while (end < wanted.size() && (!info.has_index || near())) ++end;
     request.spans.clear();
     for (size_t i = begin; i < end; ++i) request.spans.push_back({wanted[i]->file_time_s - reach_s, wanted[i]->file_time_s + reach_s});
     FrameStream stream(request);

@@ -1,5 +1,5 @@
-// Reads a GPS log in GPX 1.0 or 1.1 (topografix.com/GPX/1/1): the points of all its tracks that have a time. Elevations are above sea level by what the
-// receiver thinks.
+// Reads a GPS log in GPX 1.0 or 1.1 (topografix.com/GPX/1/1): the points of all its tracks that have a time. Elevations are above sea level by what
+// the receiver thinks.
 #pragma once
 
 #include <filesystem>

@@ -17,8 +17,8 @@ base::InputError NotInstalled(const std::filesystem::path& video, const std::str
 
 }  // namespace
 
-std::string FileArgument(const std::filesystem::path& file) {
-  return "file:" + file.string();
+std::vector<std::string> InputArguments(const std::filesystem::path& file) {
+  return {"-protocol_whitelist", "file", "-i", "file:" + file.string()};
 }
 
 base::ChildProcess StartMediaProgram(const std::string& program, const std::vector<std::string>& arguments, const std::filesystem::path& video) {

@@ -9,8 +9,9 @@
 
 namespace skyquilt::prepare::video {
 
-// As an argument: a name that begins with '-' or has a ':' in it stays a file.
-std::string FileArgument(const std::filesystem::path& file);
+// The arguments that name the input. A name that begins with '-' or has a ':' in it stays a file, and a file that is a play list opens nothing from
+// elsewhere.
+std::vector<std::string> InputArguments(const std::filesystem::path& file);
 
 // Throws base::InputError about `video` when the program is not installed or cannot be started.
 base::ChildProcess StartMediaProgram(const std::string& program, const std::vector<std::string>& arguments, const std::filesystem::path& video);

@@ -57,13 +57,13 @@ int RotationOf(const nlohmann::json& stream) {
 }  // namespace
 
 VideoInfo Probe(const std::filesystem::path& file) {
-  const ProgramOutput said =
-      RunMediaProgram("ffprobe",
-                      {"-v", "error", "-of", "json", "-show_entries",
-                       "stream=codec_type,codec_name,width,height,avg_frame_rate,field_order,duration,sample_aspect_ratio:stream_tags:stream_side_data:"
-                       "stream_disposition=attached_pic:format=duration:format_tags",
-                       FileArgument(file)},
-                      file);
+  std::vector<std::string> arguments = {
+      "-v", "error", "-of", "json", "-show_entries",
+      "stream=codec_type,codec_name,width,height,avg_frame_rate,field_order,duration,sample_aspect_ratio:stream_tags:stream_side_data:"
+      "stream_disposition=attached_pic:format=duration,format_name:format_tags"};
+  const std::vector<std::string> input = InputArguments(file);
+  arguments.insert(arguments.end(), input.begin(), input.end());
+  const ProgramOutput said = RunMediaProgram("ffprobe", arguments, file);
   if (!said.ok) {
     const std::string message = LastMessage(said.messages);
     throw base::InputError(file, "cannot be read as a video" + (message.empty() ? "" : " (" + message + ")"), kVideoFix);
@@ -78,6 +78,7 @@ VideoInfo ParseProbe(const std::string& json, const std::filesystem::path& file)
     VideoInfo info;
     const nlohmann::json format = all.value("format", nlohmann::json::object());
     info.duration_s = NumberOf(format, "duration");
+    info.has_index = TextOf(format, "format_name").find("mpeg") == std::string::npos;
     std::string created = TextOf(format.value("tags", nlohmann::json::object()), "creation_time");
     for (const nlohmann::json& stream : all.value("streams", nlohmann::json::array())) {
       const std::string type = TextOf(stream, "codec_type");

@@ -14,6 +14,7 @@ struct VideoInfo {
   double frames_per_s = 0.0;              // mean; 0: not known
   bool interlaced = false;                //
   bool has_subtitles = false;             // in the file
+  bool has_index = true;                  // so that decoding can begin anywhere, at times that stay the same; transport streams have none
   std::optional<double> created_clock_s;  // when the recording began by the camera's clock, seconds since 1970
   std::string codec;
 };

@@ -58,9 +58,10 @@ void WarnOfEarlyEnd(const std::filesystem::path& video, const VideoInfo& info, d
     if (!problem.empty()) base::LogWarning("{}: parts are damaged, frames from there may be bad; ffmpeg says: {}", video.string(), problem);
     return;
   }
-  base::LogWarning("{}: ends after {:.0f} of {:.0f} s: the file is cut off or damaged there{}. Frames up to there are used; copy it from the card again "
-                   "to have the rest",
-                   video.string(), seen_s, *info.duration_s, problem.empty() ? "" : " (ffmpeg: " + problem + ")");
+  base::LogWarning(
+      "{}: ends after {:.0f} of {:.0f} s: the file is cut off or damaged there{}. Frames up to there are used; copy it from the card again "
+      "to have the rest",
+      video.string(), seen_s, *info.duration_s, problem.empty() ? "" : " (ffmpeg: " + problem + ")");
 }
 
 }  // namespace
@@ -78,7 +79,8 @@ VideoScan ScanVideo(const std::filesystem::path& video, const VideoInfo& info, c
   scan.candidates.aspect = static_cast<double>(info.height) / info.width;
   std::vector<Candidate>& candidates = scan.candidates.candidates;
   // A twentieth less: frames that come a little early are not missed.
-  FrameStream frames({.video = video, .width = width, .height = height, .grey = true, .key_frames_only = rate.key_frames_only, .step_s = 0.95 * rate.step_s});
+  FrameStream frames(
+      {.video = video, .width = width, .height = height, .grey = true, .key_frames_only = rate.key_frames_only, .step_s = 0.95 * rate.step_s});
   MotionByCorners corners;
   size_t n_interlaced = 0;
   base::Progress progress("look at " + video.filename().string(), info.duration_s.value_or(0.0), "s");

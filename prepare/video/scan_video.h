@@ -11,10 +11,10 @@
 namespace skyquilt::prepare::video {
 
 struct VideoScan {
-  VideoCandidates candidates;   // their times since the first frame
-  double first_frame_s = 0.0;   // since the beginning of the file
-  bool by_track = false;        // moved as the tracks say; else by tracked corners
-  bool interlaced = false;      //
+  VideoCandidates candidates;  // their times since the first frame
+  double first_frame_s = 0.0;  // since the beginning of the file
+  bool by_track = false;       // moved as the tracks say; else by tracked corners
+  bool interlaced = false;     //
 };
 
 // How long videos are sampled.

@@ -212,7 +212,8 @@ class SubtitleReader {
 
   void Add() {
     std::transform(text_.begin(), text_.end(), text_.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    std::replace_if(text_.begin(), text_.end(), [](char c) { return c == '[' || c == ']' || c == '<' || c == '>' || c == '\t' || c == '\r'; }, ' ');
+    std::replace_if(
+        text_.begin(), text_.end(), [](char c) { return c == '[' || c == ']' || c == '<' || c == '>' || c == '\t' || c == '\r'; }, ' ');
     const std::string_view text = text_;
     TrackPoint point;
     const size_t decimals = ReadPosition(text, point);

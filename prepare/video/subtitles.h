@@ -1,5 +1,5 @@
-// Reads what drones write into the subtitles of their videos: position, heights, gimbal and exposure, once per frame or once per second. DJI documents
-// none of it. These forms are read, as public samples of 2016 to 2025 show them:
+// Reads what drones write into the subtitles of their videos: position, heights, gimbal and exposure, once per frame or once per second. DJI
+// documents none of it. These forms are read, as public samples of 2016 to 2025 show them:
 //   [latitude: 47.1] [longitude: 8.5] [rel_alt: 1.3 abs_alt: 121.0] [gb_yaw: 33.5 gb_pitch: -60.0 gb_roll: 0.0] [iso: 100] [shutter: 1/1000.0]
 //   [fnum: 1.7] [focal_len: 24.00]      Mini 3 and later, Air 3, Mavic 3; with FrameCnt or SrtCnt before it, or neither
 //   [latitude : 47.1] [longtitude : 8.5] [altitude: 213.9] [fnum : 280] [focal_len : 240]      Mavic 2, Air 2: hundredths and tenths
@@ -18,8 +18,8 @@
 
 namespace skyquilt::prepare::video {
 
-// No points: the subtitles tell nothing of the flight. At most about ten points per second are kept. Throws base::InputError for a file that cannot be
-// read or is no text in UTF-8 or Latin-1.
+// No points: the subtitles tell nothing of the flight. At most about ten points per second are kept. Throws base::InputError for a file that cannot
+// be read or is no text in UTF-8 or Latin-1.
 FlightTrack ReadSubtitles(const std::filesystem::path& file);
 // The same of subtitles inside a video. `file`: for messages.
 FlightTrack ParseSubtitles(std::istream& in, const std::filesystem::path& file);

@@ -97,8 +97,7 @@ std::optional<double> ClockAt(std::string_view text) {
 std::optional<TrackPoint> StateAt(const FlightTrack& track, double time_s, double most_apart_s) {
   const std::vector<TrackPoint>& points = track.points;
   if (points.empty() || !std::isfinite(time_s)) return std::nullopt;
-  const auto after =
-      std::lower_bound(points.begin(), points.end(), time_s, [](const TrackPoint& point, double time) { return point.time_s < time; });
+  const auto after = std::lower_bound(points.begin(), points.end(), time_s, [](const TrackPoint& point, double time) { return point.time_s < time; });
   if (after == points.begin() || after == points.end()) {
     const TrackPoint& nearest = after == points.end() ? points.back() : points.front();
     if (std::abs(nearest.time_s - time_s) > most_apart_s) return std::nullopt;

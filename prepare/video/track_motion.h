@@ -10,8 +10,8 @@
 
 namespace skyquilt::prepare::video {
 
-// The shift from the first state's picture to each state's, over level ground at the height of take-off. A focal length that is not tagged counts as 24
-// mm (film of 35 mm), that of most drones. Nothing when a state lacks position, a height of at least 5 m, or the direction of a camera that looks
+// The shift from the first state's picture to each state's, over level ground at the height of take-off. A focal length that is not tagged counts as
+// 24 mm (film of 35 mm), that of most drones. Nothing when a state lacks position, a height of at least 5 m, or the direction of a camera that looks
 // down at 45 degrees or steeper: then the height says little of how far away the ground is.
 std::optional<std::vector<FrameShift>> ShiftsByTrack(std::span<const TrackPoint> states);
 

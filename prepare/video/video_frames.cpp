@@ -45,7 +45,8 @@ std::vector<std::string> StemsOf(const std::vector<fs::path>& videos) {
   std::vector<std::string> stems;
   for (const fs::path& video : videos) {
     std::string stem = video.stem().string();
-    std::replace_if(stem.begin(), stem.end(), [](char c) { return std::string_view(" \\:*?\"<>|,;'").find(c) != std::string_view::npos; }, '_');
+    std::replace_if(
+        stem.begin(), stem.end(), [](char c) { return std::string_view(" \\:*?\"<>|,;'").find(c) != std::string_view::npos; }, '_');
     std::string name = stem;
     for (int i = 2; !taken.insert(name).second; ++i) name = stem + "-" + std::to_string(i);
     stems.push_back(name);
@@ -59,7 +60,8 @@ void LogSource(const Source& source) {
   if (info.duration_s) text += fmt::format(", {:.0f} s", *info.duration_s);
   if (info.frames_per_s > 0.0) text += fmt::format(" of {:.4g} frames per second", info.frames_per_s);
   if (info.rotation_deg != 0) text += fmt::format(", turned by {} degrees, as it says", info.rotation_deg);
-  for (const FlightTrack& track : source.tracks) text += fmt::format("; {} from {} ({} moments)", track.form, track.file.string(), track.points.size());
+  for (const FlightTrack& track : source.tracks)
+    text += fmt::format("; {} from {} ({} moments)", track.form, track.file.string(), track.points.size());
   if (source.tracks.empty()) text += "; no file beside it (.SRT, .GPX, .CSV) says where it was";
   base::LogInfo(text);
 }
@@ -107,12 +109,14 @@ void LogChoice(const FrameChoice& choice, const VideoOptions& options, const std
   for (const VideoCandidates& video : videos) n_candidates += video.candidates.size();
   base::LogInfo("{} frames are chosen of {} looked at, for {:.0f} % overlap", n_frames, n_candidates, 100.0 * choice.overlap);
   if (choice.thinned) {
-    base::LogWarning("the limit of {} frames leaves no overlap between neighbours: most of them will get no pose. Raise prepare.video_limit, or cut "
-                     "the videos to what matters",
-                     options.limit);
+    base::LogWarning(
+        "the limit of {} frames leaves no overlap between neighbours: most of them will get no pose. Raise prepare.video_limit, or cut "
+        "the videos to what matters",
+        options.limit);
   } else if (choice.overlap < options.overlap - 0.02) {
-    base::LogWarning("{:.0f} % overlap would take more than {} frames: they have {:.0f} % overlap. Raise prepare.video_limit where photos get no pose",
-                     100.0 * options.overlap, options.limit, 100.0 * choice.overlap);
+    base::LogWarning(
+        "{:.0f} % overlap would take more than {} frames: they have {:.0f} % overlap. Raise prepare.video_limit where photos get no pose",
+        100.0 * options.overlap, options.limit, 100.0 * choice.overlap);
   }
   if (n_jumps > 0) base::LogInfo("the picture jumps {} times (cuts, or fast turns): frames before and after are chosen apart", n_jumps);
   if (10 * n_fast > n_frames) {
@@ -150,10 +154,10 @@ nlohmann::ordered_json MakePlan(const std::vector<Source>& sources, const VideoO
     plan["videos"].push_back({{"first_frame_s", scans[v].first_frame_s}, {"interlaced", scans[v].interlaced}, {"frames", std::move(frames)}});
   }
   if (n_frames < static_cast<size_t>(input::kMinPhotos)) {
-    throw base::InputError(sources.front().video,
-                           fmt::format("shows only {} places that overlap by {:.0f} %, at least {} are needed", n_frames, 100.0 * options.overlap,
-                                       input::kMinPhotos),
-                           "Give a video in which the camera moves, or set prepare.video_overlap nearer to 1");
+    throw base::InputError(
+        sources.front().video,
+        fmt::format("shows only {} places that overlap by {:.0f} %, at least {} are needed", n_frames, 100.0 * options.overlap, input::kMinPhotos),
+        "Give a video in which the camera moves, or set prepare.video_overlap nearer to 1");
   }
   return plan;
 }

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "prepare/video/track.h"
 #include "core/survey/exif.h"
+#include "prepare/video/track.h"
 
 namespace skyquilt::prepare::video {
 
@@ -20,7 +20,8 @@ struct VideoOptions {
 std::filesystem::path FramesFolder(const std::filesystem::path& folder);
 
 // Writes to `folder`:
-//   frames/VIDEO_00012345ms.jpg   the chosen frames, named by their time in the video; tags: place, heights, gimbal, exposure, focal length and time as far
+//   frames/VIDEO_00012345ms.jpg   the chosen frames, named by their time in the video; tags: place, heights, gimbal, exposure, focal length and time
+//   as far
 //                                 as files beside the video, or subtitles in it, tell them (find_tracks.h)
 //   frames.csv                    a row for each with the reason why it was chosen; written last
 //   frames.json                   the choice, so that a second call goes on where the first was interrupted

@@ -11,8 +11,8 @@
 namespace skyquilt::simulate {
 
 // A frame every 1 / fps seconds along the way through the photos, which are in the order of capture: position and gimbal angles change evenly between
-// them, in the time that place.speed_mps and a gimbal that turns by 45 degrees per second need. Exposures are those of the nearer photo, also those that
-// no tag records. Errors of the positions are those of the photos, and change slowly between them. fps is above 0.
+// them, in the time that place.speed_mps and a gimbal that turns by 45 degrees per second need. Exposures are those of the nearer photo, also those
+// that no tag records. Errors of the positions are those of the photos, and change slowly between them. fps is above 0.
 std::vector<PhotoPlan> PlanVideo(const PlaceSpec& place, const std::vector<PhotoPlan>& photos, int fps);
 
 // The subtitles that DJI's drones of 2021 and later write beside a video: a block per frame with place, heights, gimbal and exposure. `frame`: of the

@@ -22,8 +22,10 @@ void CheckTrack(const prepare::video::FlightTrack& track) {
 
 std::vector<std::string> Seeds() {
   return {
-      "<?xml version=\"1.0\"?>\n<gpx version=\"1.1\" xmlns=\"http://www.topografix.com/GPX/1/1\"><trk><trkseg><trkpt lat=\"47.25\" lon=\"8.5\"><ele>512.5"
-      "</ele><time>2024-03-20T12:00:02+01:00</time></trkpt><trkpt lat=\"47.24\" lon=\"8.5\"><time>2024-03-20T11:00:00.500Z</time></trkpt></trkseg></trk>"
+      "<?xml version=\"1.0\"?>\n<gpx version=\"1.1\" xmlns=\"http://www.topografix.com/GPX/1/1\"><trk><trkseg><trkpt lat=\"47.25\" "
+      "lon=\"8.5\"><ele>512.5"
+      "</ele><time>2024-03-20T12:00:02+01:00</time></trkpt><trkpt lat=\"47.24\" "
+      "lon=\"8.5\"><time>2024-03-20T11:00:00.500Z</time></trkpt></trkseg></trk>"
       "</gpx>",
       "time(millisecond),datetime(utc),latitude,longitude,height_above_takeoff(feet),gimbal_pitch(degrees),isVideo\n0,2024-03-20 "
       "11:00:00,47.5,8.5,100,-90,0\n100,2024-03-20 11:00:00,47.6,8.5,200,,1\n400,2024-03-20 11:00:01,47.7,8.5,NaN,-45,1\n",

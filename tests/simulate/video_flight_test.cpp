@@ -47,8 +47,9 @@ TEST_F(FilmedFlight, SubtitlesHaveWhatTheTagsOfPhotosHave) {
   const geo::EnuFrame frame({47.0, 8.5, 400.0});
   WriteSubtitles(frames_, kVideoFps, place_.camera, frame, folder_ / "a.SRT");
   const std::string text = base::ReadFile(folder_ / "a.SRT");
-  EXPECT_NE(text.find("2\n00:00:00,200 --> 00:00:00,400\n<font size=\"28\">FrameCnt: 2, DiffTime: 200ms\n2026-05-04 10:00:00.200\n[iso: 100] [shutter: 1/"),
-            std::string::npos)
+  EXPECT_NE(
+      text.find("2\n00:00:00,200 --> 00:00:00,400\n<font size=\"28\">FrameCnt: 2, DiffTime: 200ms\n2026-05-04 10:00:00.200\n[iso: 100] [shutter: 1/"),
+      std::string::npos)
       << text.substr(0, 600);
   EXPECT_NE(text.find("[latitude: 47.000"), std::string::npos);
   EXPECT_NE(text.find("[longitude: 8.500"), std::string::npos);
@@ -60,8 +61,9 @@ TEST_F(FilmedFlight, NeedsASurveyOfEvenSize) {
   base::ThreadPool threads(1);
   EXPECT_NE(ErrorOf<base::UsageError>([&] { Simulate({.place = "hamlet", .image_width = 33, .video_fps = 5}, folder_ / "a", threads); }).find("even"),
             std::string::npos);
-  EXPECT_NE(ErrorOf<base::UsageError>([&] { Simulate({.place = "hamlet", .flight = "street", .video_fps = 5}, folder_ / "b", threads); }).find("survey"),
-            std::string::npos);
+  EXPECT_NE(
+      ErrorOf<base::UsageError>([&] { Simulate({.place = "hamlet", .flight = "street", .video_fps = 5}, folder_ / "b", threads); }).find("survey"),
+      std::string::npos);
 }
 
 }  // namespace

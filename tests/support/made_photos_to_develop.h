@@ -95,7 +95,8 @@ inline bool WriteHeic(const image::Image8& pixels, const std::filesystem::path& 
     heif_image_add_plane(picture, heif_channel_interleaved, pixels.width, pixels.height, 8);
     int stride = 0;
     uint8_t* rows = heif_image_get_plane(picture, heif_channel_interleaved, &stride);
-    for (int y = 0; y < pixels.height; ++y) std::memcpy(rows + static_cast<ptrdiff_t>(stride) * y, pixels.At(0, y), static_cast<size_t>(3) * pixels.width);
+    for (int y = 0; y < pixels.height; ++y)
+      std::memcpy(rows + static_cast<ptrdiff_t>(stride) * y, pixels.At(0, y), static_cast<size_t>(3) * pixels.width);
     heif_image_handle* handle = nullptr;
     written = heif_context_encode_image(context, picture, encoder, nullptr, &handle).code == heif_error_Ok;
     if (written && !exif.empty()) heif_context_add_exif_metadata(context, handle, exif.data(), static_cast<int>(exif.size()));

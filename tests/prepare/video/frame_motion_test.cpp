@@ -53,8 +53,9 @@ void ExpectNear(const FrameShift& found, const FrameShift& shift) {
 }
 
 TEST(FrameTracker, FindsShiftsTurnsAndScales) {
-  for (const FrameShift& shift : {FrameShift{.right = 0.2, .down = -0.05}, FrameShift{.down = 0.25}, FrameShift{.a = std::cos(0.06), .b = std::sin(0.06)},
-                                  FrameShift{.a = 1.05, .right = 0.03}, FrameShift{.a = std::cos(-0.04), .b = std::sin(-0.04), .right = -0.1}}) {
+  for (const FrameShift& shift :
+       {FrameShift{.right = 0.2, .down = -0.05}, FrameShift{.down = 0.25}, FrameShift{.a = std::cos(0.06), .b = std::sin(0.06)},
+        FrameShift{.a = 1.05, .right = 0.03}, FrameShift{.a = std::cos(-0.04), .b = std::sin(-0.04), .right = -0.1}}) {
     FrameTracker tracker;
     EXPECT_FALSE(tracker.Track(SeenWith({})));
     const std::optional<TrackedShift> tracked = tracker.Track(SeenWith(shift));

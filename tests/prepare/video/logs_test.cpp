@@ -38,8 +38,8 @@ TEST_F(FlightLogs, OtherXmlIsNoGpx) {
 }
 
 TEST_F(FlightLogs, CsvHasColumnsByTheirNames) {
-  const std::vector<FlightTrack> tracks = ReadCsvTracks(
-      Written("a.csv", "Time(millisecond),Latitude,Longitude,Height_above_takeoff(feet),gimbal_pitch(degrees)\n0,47.5,8.5,100,-90\n1000,47.6,8.5,200,\n"));
+  const std::vector<FlightTrack> tracks = ReadCsvTracks(Written(
+      "a.csv", "Time(millisecond),Latitude,Longitude,Height_above_takeoff(feet),gimbal_pitch(degrees)\n0,47.5,8.5,100,-90\n1000,47.6,8.5,200,\n"));
   ASSERT_EQ(tracks.size(), 1U);
   ASSERT_EQ(tracks[0].points.size(), 2U);
   EXPECT_FALSE(tracks[0].by_clock);
@@ -50,8 +50,8 @@ TEST_F(FlightLogs, CsvHasColumnsByTheirNames) {
 }
 
 TEST_F(FlightLogs, EachRecordingOfALogBeginsAnew) {
-  const std::vector<FlightTrack> tracks = ReadCsvTracks(
-      Written("a.csv", "time_s;lat;lon;isVideo\n0;47;8;0\n1;47;8;1\n2;47;8;1\n3;47;8;0\n5;47;8;1\n6;47;8;1\n7;47;8;1\n"));
+  const std::vector<FlightTrack> tracks =
+      ReadCsvTracks(Written("a.csv", "time_s;lat;lon;isVideo\n0;47;8;0\n1;47;8;1\n2;47;8;1\n3;47;8;0\n5;47;8;1\n6;47;8;1\n7;47;8;1\n"));
   ASSERT_EQ(tracks.size(), 2U);
   EXPECT_EQ(tracks[0].points.size(), 2U);
   EXPECT_DOUBLE_EQ(tracks[1].points.front().time_s, 0.0);

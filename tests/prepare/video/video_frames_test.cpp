@@ -189,7 +189,8 @@ TEST_F(VideoFrames, OfACameraThatStandsStillAreTooFew) {
 TEST_F(VideoFrames, HaveTheirTimesWhateverTheRate) {
   // Every third frame is left out: the others keep their times.
   const fs::path even = MakeVideo(folder_ / "even.mp4", 40), uneven = folder_ / "uneven.mkv";
-  OutputOf("ffmpeg", {"-v", "error", "-i", even.string(), "-vf", "select='mod(n,3)'", "-fps_mode", "passthrough", "-c:v", "libx264", uneven.string()});
+  OutputOf("ffmpeg",
+           {"-v", "error", "-i", even.string(), "-vf", "select='mod(n,3)'", "-fps_mode", "passthrough", "-c:v", "libx264", uneven.string()});
   FrameStream stream({.video = uneven, .width = kVideoWidth, .height = kVideoHeight});
   std::optional<double> first_s;
   int n_frames = 0;
@@ -199,6 +200,17 @@ TEST_F(VideoFrames, HaveTheirTimesWhateverTheRate) {
   }
   EXPECT_EQ(n_frames, 26);
   EXPECT_EQ(stream.Problem(), "");
+}
+
+TEST_F(VideoFrames, OfATransportStreamAreExactToo) {
+  const fs::path whole = MakeVideo(folder_ / "a.mp4", 60), stream = folder_ / "a.ts";
+  OutputOf("ffmpeg", {"-v", "error", "-i", whole.string(), "-c", "copy", stream.string()});
+  ProvideFrames({stream}, {}, folder_ / "survey");
+  const std::vector<fs::path> frames = FramesIn(folder_ / "survey");
+  EXPECT_GE(frames.size(), 9U);
+  for (const fs::path& file : frames) {
+    EXPECT_EQ(std::stoi(file.filename().string().substr(2, 8)), 1000 * NumberOf(image::LoadRgb8(file)) / kFps) << file;
+  }
 }
 
 TEST(Tags, ComeFromTheState) {

@@ -1,5 +1,6 @@
 #include "odm/dataset.h"
 
+#include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +9,8 @@
 #include "core/base/json_text.h"
 #include "core/gis/boundary.h"
 #include "prepare/input/list_files.h"
+#include "prepare/video/find_videos.h"
+#include "prepare/video/probe.h"
 
 namespace skyquilt::odm {
 namespace {
@@ -22,6 +25,24 @@ std::string FileOf(const Request& request, const std::string& option, const fs::
     return file.string();
   }
   return !usual.empty() && fs::is_regular_file(usual) ? usual.string() : std::string();
+}
+
+// Frames are taken later: a guess of their number.
+bool CountFrames(const Request& request, Dataset* dataset) {
+  const std::vector<fs::path> videos = prepare::video::FindVideos({dataset->images});
+  if (videos.empty()) return false;
+  // Drones on survey flights move by a quarter of the picture in about this time.
+  constexpr double kBetweenFrames_s = 2.0;
+  const double longest = request.Number("--video-resolution");
+  double seconds = 0.0;
+  for (const fs::path& video : videos) {
+    const prepare::video::VideoInfo info = prepare::video::Probe(video);
+    seconds += info.duration_s.value_or(0.0);
+    const double scale = std::min(1.0, longest / std::max(info.width, info.height));
+    dataset->megapixels = std::max(dataset->megapixels, 1e-6 * scale * scale * info.width * info.height);
+  }
+  dataset->photos = static_cast<int>(std::clamp(seconds / kBetweenFrames_s, 3.0, std::max(3.0, request.Number("--video-limit"))));
+  return true;
 }
 
 void CountPhotos(const fs::path& project, base::ThreadPool& threads, Dataset* dataset) {
@@ -101,7 +122,7 @@ Dataset FindDataset(const Request& request, base::ThreadPool& threads) {
   if (!request.Has("--use-exif")) dataset.gcp = FileOf(request, "--gcp", dataset.folder / "gcp_list.txt");
   dataset.geo = FileOf(request, "--geo", {});
   dataset.has_groups = fs::is_regular_file(dataset.folder / "image_groups.txt");
-  CountPhotos(dataset.project, threads, &dataset);
+  if (!CountFrames(request, &dataset)) CountPhotos(dataset.project, threads, &dataset);
   return dataset;
 }
 

@@ -22,6 +22,8 @@ void ApplyPoses(const Request& request, const Dataset& dataset, const Effort& ef
   prepare->max_image_size = effort.feature_size;
   if (request.Has("--min-num-features")) prepare->max_features = std::max(100, WholeOf(request, "--min-num-features"));
   if (request.Has("--gps-accuracy")) prepare->ransac_threshold_m = std::max(0.1, kTagLimit * request.Number("--gps-accuracy"));
+  prepare->video_limit = std::max(3, WholeOf(request, "--video-limit"));
+  prepare->video_size = std::clamp(WholeOf(request, "--video-resolution"), 100, 65'535);
   const std::string lens = request.Text("--camera-lens");
   if (lens == "spherical" || lens == "equirectangular" || lens == "dual") {
     throw base::UsageError("--camera-lens " + lens + " cannot be used: photos of all directions have to be cut into plain ones first");

@@ -50,6 +50,7 @@
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
 #include "prepare/survey_points.h"
+#include "prepare/video/video_frames.h"
 
 namespace skyquilt::prepare {
 namespace {
@@ -314,7 +315,9 @@ std::vector<input::PreparedPhoto> PutBack(const WithheldPhotos& withheld, const 
 survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options, base::ThreadPool& threads, poses::RemoteTasks* ranks,
                        const OnPlaced& on_placed) {
   options.Check();
-  input::InputFolder folders = input::FindInputs(input.photos, input.model, options.masks);
+  if (!input.videos.empty()) video::ProvideFrames(input.videos, VideoOptionsOf(options), input.out_folder);
+  const fs::path photo_folder = input.videos.empty() ? input.photos : video::FramesFolder(input.out_folder);
+  input::InputFolder folders = input::FindInputs(photo_folder, input.model, options.masks);
   base::RequireWritableFolder(input.out_folder);
 
   std::vector<input::InputFile> files = ListFiles(input, options, folders, threads);

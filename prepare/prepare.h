@@ -9,6 +9,7 @@
 //   masks/                      the photos' masks, where they are not in that form already (input/masks/masks.h)
 //   photos_8bit/                pictures that all later stages read instead of the photos, when some have more than 8 bits or several bands
 //                               (input/plain_photos.h)
+//   frames/, frames.csv         photos that are frames of videos, and why each was chosen (video/video_frames.h)
 //   scaled_model/               a COLMAP model that was made from photos of another size, scaled (input/match_sizes.h)
 //   colmap/                     database, models and log, when COLMAP was run, also for points of a model without; a second call resumes where the
 //                               first stopped
@@ -18,6 +19,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <vector>
 
 #include "core/base/thread_pool.h"
 #include "core/survey/survey.h"
@@ -33,6 +35,7 @@ struct PrepareInput {
   std::filesystem::path photos;      // folder, searched recursively; see FindInputs in input/input_folder.h
   std::filesystem::path model;       // folder or file of a model (models/read_model.h); empty: COLMAP is run (simulated survey: its own model)
   std::filesystem::path out_folder;  // created if needed
+  std::vector<std::filesystem::path> videos = {};  // if not empty: frames of these are the photos, instead of `photos`
 };
 
 // Called once photos, poses, place, held-out photos and sparse points of the survey are known, while its checks and directions are not: a first look

@@ -41,6 +41,11 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"photos", &O::photos, Range(),
        "which pictures are photos: patterns of their paths below the photo folder, separated by commas, such as *.JPG or flight1/**; empty: all but "
        "bands, pictures of heat, thumbnails and others that survey/input.csv lists with a reason"},
+      {"video_overlap", &O::video_overlap, Range{0, 0.95}, "share of a frame of a video that the next frame that is taken shows too"},
+      {"video_limit", &O::video_limit, Range::AtLeast(3).Or(0), "most frames that are taken of all videos together; 0: as many as the overlap needs"},
+      {"video_size", &O::video_size, Range{100, 65535}.Or(0), "longer side in pixels of frames of larger videos; 0: that of the video"},
+      {"video_clock_offset_s", &O::video_clock_offset_s, Range{-1e6, 1e6},
+       "seconds that the clock of the videos is behind that of GPX and CSV files beside them"},
       {"masks", &O::masks, Range(),
        "folder of masks named PHOTO.jpg.png, or one mask for all photos; 0 = ignore; empty: those in and beside the photo folder by their names, and "
        "the photos' alpha; none: no masks"},
@@ -113,6 +118,10 @@ georeference::PlaceOptions PlaceOptionsOf(const PrepareOptions& options) {
           .flight_offsets = options.flight_offsets,
           .tag_lag = options.tag_lag,
           .seed = options.seed};
+}
+
+video::VideoOptions VideoOptionsOf(const PrepareOptions& options) {
+  return {.overlap = options.video_overlap, .limit = options.video_limit, .size = options.video_size, .clock_offset_s = options.video_clock_offset_s};
 }
 
 }  // namespace skyquilt::prepare

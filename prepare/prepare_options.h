@@ -8,6 +8,7 @@
 #include "prepare/control/reading/read_control.h"
 #include "prepare/georeference/place_options.h"
 #include "prepare/poses/pose_options.h"
+#include "prepare/video/video_frames.h"
 
 namespace skyquilt::prepare {
 
@@ -23,6 +24,10 @@ struct PrepareOptions {
   int max_features = 8192;
   bool use_gpu = false;
   std::string photos;
+  double video_overlap = 0.75;
+  int video_limit = 500;
+  int video_size = 0;
+  double video_clock_offset_s = 0.0;
   std::string bands;
   std::string masks;
   std::string geo_file;
@@ -46,9 +51,10 @@ struct PrepareOptions {
   void Check() const;
 };
 
-// The parts that the search for poses, the reading of control points and the geo-reference need.
+// The parts that the search for poses, the reading of control points, the geo-reference and the choice of frames need.
 poses::PoseOptions PoseOptionsOf(const PrepareOptions& options);
 control::ControlFiles ControlFilesOf(const PrepareOptions& options);
 georeference::PlaceOptions PlaceOptionsOf(const PrepareOptions& options);
+video::VideoOptions VideoOptionsOf(const PrepareOptions& options);
 
 }  // namespace skyquilt::prepare

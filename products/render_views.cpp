@@ -10,7 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/progress.h"
 #include "core/image/normal_image.h"
-#include "products/video_writer.h"
+#include "core/image/video_writer.h"
 
 namespace skyquilt::products {
 namespace {
@@ -71,7 +71,7 @@ RenderStats RenderVideo(const ViewRenderer& renderer, const std::vector<View>& v
   SKYQUILT_CHECK(!views.empty(), "a video without frames");
   RenderStats stats;
   if (file.has_parent_path()) base::RequireWritableFolder(file.parent_path());
-  VideoWriter video(file, views.front().camera.width, views.front().camera.height, fps);
+  image::VideoWriter video(file, views.front().camera.width, views.front().camera.height, fps);
   base::Progress progress("video", static_cast<double>(views.size()), "frames");
   for (const View& view : views) {
     video.Write(ColorImage(Render(renderer, view, &stats), view.camera.width, view.camera.height));

@@ -8,7 +8,7 @@ set -euo pipefail
 run_packages=(
   build-essential clang cmake ninja-build ccache pkg-config
   libopenmpi-dev openmpi-bin libeigen3-dev libopencv-dev colmap libgeographiclib-dev libhdf5-dev libhwy-dev
-  libgdal-dev gdal-bin libexiv2-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libspdlog-dev libfmt-dev
+  libgdal-dev gdal-bin libexiv2-dev libheif-dev libraw-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libspdlog-dev libfmt-dev
   libembree-dev
   libboost-dev libceres-dev libproj-dev proj-data libpugixml-dev libsqlite3-dev zlib1g-dev ffmpeg python3
 )

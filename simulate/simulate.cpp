@@ -14,6 +14,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "core/image/video_writer.h"
 #include "simulate/building_truth.h"
 #include "simulate/control_marks.h"
 #include "simulate/control_targets.h"
@@ -21,6 +22,7 @@
 #include "simulate/edge_targets.h"
 #include "simulate/flight.h"
 #include "simulate/flights/level_flight.h"
+#include "simulate/flights/video_flight.h"
 #include "simulate/model_frame.h"
 #include "simulate/photo_renderer.h"
 #include "simulate/place_spec.h"
@@ -38,7 +40,7 @@ namespace fs = std::filesystem;
 constexpr int kSeedsPerPhoto = 170;
 constexpr int kSeedsPerLevelPhoto = 600;  // most are on plain walls and in the sky, where no feature is
 constexpr const char* kStarted = "simulate.started";
-constexpr std::array<const char*, 4> kParts = {"images", "sparse", "truth", "control"};
+constexpr std::array<const char*, 5> kParts = {"images", "sparse", "truth", "control", "video"};
 
 // Makes the folders. Removes an earlier simulation, but nothing else.
 void PrepareFolder(const fs::path& folder) {
@@ -97,6 +99,38 @@ void WriteControl(const SimulateOptions& options, const PlaceSpec& place, const 
   WriteControlFiles(files, frame, folder);
 }
 
+// Before minutes of rendering. Videos are encoded in halves of the resolution for colours, which need even sizes.
+void CheckVideo(const SimulateOptions& options, const PlaceSpec& place) {
+  if (options.video_fps == 0) return;
+  if (place.flight != FlightKind::kSurvey) {
+    throw base::UsageError("simulate.video_fps must be 0 with simulate.flight = " + options.flight + ": only a survey's flight is filmed");
+  }
+  if (place.camera.width % 2 != 0 || place.camera.height % 2 != 0) {
+    throw base::UsageError("simulate.video_fps needs photos of even size, not of " + std::to_string(place.camera.width) + " x " +
+                           std::to_string(place.camera.height) + " pixels: change simulate.image_width");
+  }
+}
+
+// Films the flight of the photos.
+void FilmFlight(const SimulateOptions& options, const PlaceSpec& place, const std::vector<PhotoPlan>& photos, const World& world,
+                const PhotoRenderer& renderer, const geo::EnuFrame& frame, const fs::path& folder, base::ThreadPool& threads) {
+  const std::vector<PhotoPlan> frames = PlanVideo(place, photos, options.video_fps);
+  fs::create_directories(folder / "video");
+  image::VideoWriter video(folder / "video" / "flight.mp4", place.camera.width, place.camera.height, options.video_fps);
+  base::Progress progress("film", static_cast<double>(frames.size()), "frames");
+  for (const PhotoPlan& one : frames) {
+    base::ThrowIfCancelled();
+    const Rendering rendering = renderer.Render(one.cam_from_enu, world.MovingAt(one.time_s), threads);
+    video.Write(Develop(rendering.rgb_linear, {LightRgb(one), place.vignetting, place.camera.PrincipalPoint()}));
+    progress.Advance();
+  }
+  video.Close();
+  progress.Finish();
+  WriteSubtitles(frames, options.video_fps, place.camera, frame, folder / "video" / "flight.SRT");
+  WriteVideoPoses(frames, folder / "truth" / "video_poses.csv");
+  base::LogInfo("simulate: a video of {} frames, {:.0f} s long", frames.size(), static_cast<double>(frames.size()) / options.video_fps);
+}
+
 }  // namespace
 
 SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder, base::ThreadPool& threads) {
@@ -111,6 +145,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
 SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder, base::ThreadPool& threads, const FlightPlanner& plan) {
   const auto begin = std::chrono::steady_clock::now();
   const PlaceSpec place = ResolvePlace(options);
+  CheckVideo(options, place);
   PrepareFolder(folder);
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
   base::LogInfo("simulate: building place {}", place.name);
@@ -155,6 +190,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
     }
   }
   progress.Finish();
+  if (options.video_fps > 0) FilmFlight(options, place, photos, world, renderer, frame, folder, threads);
   std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, place.camera, photos, seeds, place.seed, threads);
   summary.n_points = static_cast<int>(points.size());
   survey::ColmapModel model = MakeModel(place.camera, photos, std::move(points));

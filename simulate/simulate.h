@@ -11,6 +11,7 @@
 //   truth/masks/<name>.jpg.png         0 on a moving car or its shadow; only for photos that show one
 //   truth/exposure.json                brightness of every photo
 //   truth/buildings.json               position and size of every part of a building, and the outlines that parts have together
+//   video/flight.mp4, flight.SRT       with simulate.video_fps: the same flight filmed (flights/video_flight.h), and truth/video_poses.csv
 //   control/                           ground control as several programs write it (control_writer.h), with simulate.control_points or check_points
 //   simulate.json                      place, origin, options, suggested blocks, the true frame of a model without exact_frame; written last
 #pragma once

@@ -79,6 +79,8 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
        "number of trucks and containers parked in the streets, 8 m long and 3.5 m high, as far as there is room; they are no buildings"},
       {"ortho_cell_m", &O::ortho_cell_m, Range{0.005, 10}.Or(0),
        "also write the true orthophoto, straight from above and without moving cars, with cells of this many metres; 0: none"},
+      {"video_fps", &O::video_fps, Range{1, 60}.Or(0),
+       "also film the flight of a survey, with so many frames per second, and write subtitles with place and heights as drones do; 0: no video"},
       {"edge_targets", &O::edge_targets, Range{0, 100},
        "number of slanted-edge targets on open ground, half black and half white, to measure the sharpness of maps and photos"},
       {"exact_frame", &O::exact_frame, Range(),

@@ -50,6 +50,7 @@ struct SimulateOptions {
   bool bridge = false;                    // over a crossing in the middle of the place
   int trucks = 0;                         // 0..100, parked trucks and containers
   double ortho_cell_m = 0.0;              // 0 or 0.005..10, width of the cells of a true orthophoto; 0: none
+  int video_fps = 0;                      // 0 or 1..60 frames per second of a video of the same flight; 0: none
   int edge_targets = 0;                   // 0..100 slanted-edge targets on the ground, see edge_targets.h
   bool exact_frame = true;                // false: the COLMAP model is under a random similarity, as structure from motion makes it
   // Errors of the tags; none by default. See tag_faults.h.

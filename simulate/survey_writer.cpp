@@ -36,6 +36,7 @@ Json OptionsJson(SimulateOptions options) {
   if (options.tags == "auto") json.erase("tags");
   if (options.ortho_cell_m == 0.0) json.erase("ortho_cell_m");
   if (options.edge_targets == 0) json.erase("edge_targets");
+  if (options.video_fps == 0) json.erase("video_fps");
   return json;
 }
 

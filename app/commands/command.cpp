@@ -10,6 +10,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
+#include "prepare/video/find_videos.h"
 #include "viewer/tour_parts.h"
 
 namespace skyquilt::app {
@@ -126,6 +127,21 @@ void AddControlFlags(CLI::App& command, const Overrides& overrides) {
       ->type_name("FILE");
   AddOptionFlag(command, overrides, "--check-points", "prepare.check_points",
                 "points of the control file that are only compared: labels separated by commas, or a file with a label per line");
+}
+
+void AddPhotosArgument(CLI::App& command, std::vector<std::string>& photos) {
+  command.add_option("photos", photos, "folder with photos or videos, video files, or a simulated survey")->type_name("FOLDER|VIDEO...");
+}
+
+std::vector<std::filesystem::path> VideosAmong(const std::vector<std::string>& photos) {
+  const std::vector<std::filesystem::path> inputs(photos.begin(), photos.end());
+  // What a folder holds is looked at when it is read.
+  if (inputs.size() == 1 && std::filesystem::is_directory(inputs.front())) return {};
+  return inputs.empty() ? inputs : prepare::video::FindVideos(inputs);
+}
+
+void AddVideoFlags(CLI::App& command, const Overrides& overrides) {
+  AddOptionFlag(command, overrides, "--video-limit", "prepare.video_limit", "most frames that are taken of all videos together; 0: any number");
 }
 
 void AddStatedFlags(CLI::App& command, const Overrides& overrides) {

@@ -59,6 +59,13 @@ void AddPlaceFlag(CLI::App& command, const std::string& names, const std::functi
 void AddModelFlag(CLI::App& command, std::string& model);
 // --gcp: a file, stored as an absolute path; --check-points.
 void AddControlFlags(CLI::App& command, const Overrides& overrides);
+// The input of `prepare` and `run`: a folder of photos or of videos, or video files.
+void AddPhotosArgument(CLI::App& command, std::vector<std::string>& photos);
+// Videos among these, for Pipeline::videos; empty for a folder. Throws base::InputError when nothing is there, base::UsageError for a folder beside
+// others.
+std::vector<std::filesystem::path> VideosAmong(const std::vector<std::string>& photos);
+// --video-limit.
+void AddVideoFlags(CLI::App& command, const Overrides& overrides);
 // --up, --scale-bar (may be repeated).
 void AddStatedFlags(CLI::App& command, const Overrides& overrides);
 // --boundary: a file; stored as an absolute path, as later commands may run elsewhere.

@@ -67,7 +67,8 @@ void PrintPlans(const PlanFlags& flags, const coordinator::WorkSize& size, const
 void ShowPlans(const CommandState& state, const PlanFlags& flags, const std::vector<config::Override>& overrides) {
   const coordinator::Settings settings = state.Load({}, overrides);
   if (!std::filesystem::is_directory(flags.photos)) {
-    throw base::InputError(flags.photos, "no such folder", "Give the folder that holds the photos");
+    throw base::InputError(flags.photos, "no such folder",
+                           "Give the folder that holds the photos; of videos, 'skyquilt prepare VIDEO -o DIR' makes photos in DIR/survey/frames");
   }
   if (flags.machines > flags.ranks) throw base::UsageError("--machines is more than --ranks: every machine needs a rank");
   base::ThreadPool threads(settings.run.threads);

@@ -6,7 +6,7 @@ namespace skyquilt::app {
 
 void AddPrepare(CLI::App& app, CommandState& state) {
   struct PrepareFlags {
-    std::string photos;
+    std::vector<std::string> photos;
     std::string model;
     std::string out;
     bool restart = false;
@@ -14,11 +14,13 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   const auto flags = std::make_shared<PrepareFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
   CLI::App* command = app.add_subcommand("prepare", "make a geo-referenced survey from photos and their camera model");
-  command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");
+  AddPhotosArgument(*command, flags->photos);
+  command->get_option("photos")->required();
   command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
   AddModelFlag(*command, flags->model);
   AddControlFlags(*command, overrides);
   AddStatedFlags(*command, overrides);
+  AddVideoFlags(*command, overrides);
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddOptionFlag(*command, overrides, "--masks", "prepare.masks",
@@ -27,6 +29,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   command->footer(
       "Examples:\n"
       "  skyquilt prepare photos/ -o out\n"
+      "  skyquilt prepare DJI_0001.MP4 DJI_0002.MP4 -o out --video-limit 300\n"
       "  skyquilt prepare photos/ --model sparse/0 -o out\n"
       "  skyquilt prepare photos/ --model odm/opensfm/reconstruction.json -o out\n"
       "  skyquilt prepare photos/ -o out --holdout every:10\n"
@@ -36,9 +39,11 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   command->callback([&state, flags, overrides] {
     state.run_command = [&state, flags, overrides] {
       coordinator::Settings settings = state.Load({}, *overrides);
+      std::vector<std::filesystem::path> videos = VideosAmong(flags->photos);
       coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags->out), std::move(settings), flags->restart);
       pipeline.level_settings = state.LoadForLevelPhotos(*overrides);
-      coordinator::PrepareStage(pipeline, flags->photos, flags->model);
+      pipeline.videos = std::move(videos);
+      coordinator::PrepareStage(pipeline, flags->photos.front(), flags->model);
     };
   });
 }

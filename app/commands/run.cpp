@@ -11,7 +11,7 @@ namespace skyquilt::app {
 namespace {
 
 struct RunFlags {
-  std::string photos;
+  std::vector<std::string> photos;
   std::string place;
   std::string model;
   std::string out;
@@ -20,18 +20,21 @@ struct RunFlags {
 
 void Run(const CommandState& state, const RunFlags& flags, const std::vector<config::Override>& overrides) {
   if (flags.photos.empty() == flags.place.empty()) {
-    throw base::UsageError("skyquilt run needs either a folder with photos or --place NAME, not both");
+    throw base::UsageError("skyquilt run needs either a folder with photos, or videos, or --place NAME");
   }
   coordinator::Settings settings = state.Load({}, overrides);
   // Checked before the output folder is created and before hours of work.
-  coordinator::RequireInputs(settings, flags.photos, flags.model);
+  std::vector<std::filesystem::path> videos = VideosAmong(flags.photos);
+  const std::string photos = flags.photos.empty() ? std::string() : flags.photos.front();
+  coordinator::RequireInputs(settings, videos.empty() ? photos : std::string(), flags.model);
   if (coordinator::StageNamed("tour").wanted(settings)) viewer::TourPage(state.front_end);
   coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
   pipeline.level_settings = state.LoadForLevelPhotos(overrides);
+  pipeline.videos = std::move(videos);
   coordinator::UseTotalTime(pipeline);
   coordinator::RecallLevelSettings(pipeline);
   coordinator::RequireSameConfiguration(pipeline, "prepare");
-  coordinator::RunStages(pipeline, flags.photos, flags.model);
+  coordinator::RunStages(pipeline, photos, flags.model);
   coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
 }
 
@@ -41,7 +44,7 @@ void AddRun(CLI::App& app, CommandState& state) {
   const auto flags = std::make_shared<RunFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
   CLI::App* command = app.add_subcommand("run", "run all stages: from photos to scene, map products and report");
-  command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->type_name("FOLDER");
+  AddPhotosArgument(*command, flags->photos);
   command->add_option("-o,--out", flags->out, "project folder; created if it does not exist")->required()->type_name("FOLDER");
   AddPlaceFlag(
       *command, "--place",
@@ -53,6 +56,7 @@ void AddRun(CLI::App& app, CommandState& state) {
   AddModelFlag(*command, flags->model);
   AddControlFlags(*command, overrides);
   AddStatedFlags(*command, overrides);
+  AddVideoFlags(*command, overrides);
   AddOptionFlag(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
   AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
                 "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
@@ -69,6 +73,7 @@ void AddRun(CLI::App& app, CommandState& state) {
       "  skyquilt run photos/ -o out --within 20min\n"
       "  skyquilt run photos/ -o out --blocks 2x2 --time-budget 10min --image-width 1000\n"
       "  skyquilt run photos/ --model sparse/0 -o out --blocks 3x3 --time-budget 15min\n"
+      "  skyquilt run DJI_0001.MP4 -o out --within 30min\n"
       "  skyquilt run --place town -o out/town --steps 3000\n"
       "  mpirun -n 3 skyquilt run photos/ -o out --time-budget 1h30m\n"
       "Run the same command again to continue after an interruption; finished stages are skipped.\n"

@@ -24,10 +24,17 @@ void AddSimulate(CLI::App& app, CommandState& state) {
   AddOptionFlag(*command, overrides, "--image-width", "simulate.image_width", "width of the photos in pixels");
   AddOptionFlag(*command, overrides, "--altitudes", "simulate.altitudes",
                 "flying height above ground in metres: one, or one per block, separated by commas");
+  command->add_flag_callback(
+      "--video",
+      [overrides] {
+        overrides->push_back({"simulate.video_fps", "5"});
+      },
+      "also film the flight, with 5 frames per second, into video/flight.mp4, with subtitles as drones write them [simulate.video_fps]");
   command->add_flag("--restart", flags->restart, "remove an earlier survey in the folder first");
   command->footer(
       "Examples:\n"
       "  skyquilt simulate hamlet -o data/hamlet\n"
+      "  skyquilt simulate hamlet -o data/film --video --image-width 640\n"
       "  skyquilt simulate town -o data/town --seed 7 --altitudes 60,80,60,80\n"
       "  skyquilt simulate hamlet -o data/street --flight street\n"
       "  skyquilt simulate tidalflat -o data/flat --set simulate.exposure_jumps_stops=1.5");

@@ -12,9 +12,54 @@
 #include "core/base/memory_map.h"
 #include "core/base/text.h"
 #include "core/config/options.h"
+#include "core/image/develop.h"
 #include "prepare/input/other_projects.h"
 
 namespace skyquilt::coordinator {
+namespace {
+
+bool IsPicture(const std::filesystem::path& file) {
+  static const std::set<std::string> kImages = {".jpg", ".jpeg", ".png", ".tif", ".tiff"};
+  return kImages.contains(base::LowerCase(file.extension().string()));
+}
+
+// Without the folder `except`, and without other projects.
+std::vector<std::filesystem::path> FilesBelow(const std::filesystem::path& folder, const std::filesystem::path& except) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::recursive_directory_iterator it(folder, std::filesystem::directory_options::follow_directory_symlink, error), end;
+       !error && it != end; it.increment(error)) {
+    if (!except.empty() && it->path().lexically_normal() == except) {
+      it.disable_recursion_pending();
+      continue;
+    }
+    // Another project there may still be worked on, and gives no photos.
+    std::error_code ignored;
+    if (it->is_directory(ignored) && !prepare::input::ProjectKind(it->path()).empty() &&
+        !std::filesystem::is_directory(it->path() / "images", ignored)) {
+      it.disable_recursion_pending();
+      continue;
+    }
+    if (it->is_regular_file(error)) files.push_back(it->path());
+  }
+  return files;
+}
+
+std::string LineOf(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto time = std::chrono::duration_cast<std::chrono::seconds>(std::filesystem::last_write_time(file, error).time_since_epoch()).count();
+  return file.lexically_relative(folder).generic_string() + "|" + std::to_string(std::filesystem::file_size(file, error)) + "|" +
+         std::to_string(time);
+}
+
+std::string IdentityOf(std::vector<std::string> lines) {
+  std::sort(lines.begin(), lines.end());
+  std::string all;
+  for (const std::string& line : lines) all += line + "\n";
+  return std::to_string(lines.size()) + " images, " + base::HashHex(all);
+}
+
+}  // namespace
 
 std::string StageStamp::Hash() const {
   FlatOptions all = options;
@@ -88,32 +133,25 @@ std::string FileIdentity(const std::filesystem::path& file) {
 }
 
 std::string PhotosIdentity(const std::filesystem::path& folder, const std::filesystem::path& except) {
-  static const std::set<std::string> kImages = {".jpg", ".jpeg", ".png", ".tif", ".tiff"};
   std::vector<std::string> lines;
-  std::error_code error;
-  for (std::filesystem::recursive_directory_iterator it(folder, std::filesystem::directory_options::follow_directory_symlink, error), end;
-       !error && it != end; it.increment(error)) {
-    if (!except.empty() && it->path().lexically_normal() == except) {
-      it.disable_recursion_pending();
-      continue;
-    }
-    // Another project there may still be worked on, and gives no photos.
-    std::error_code ignored;
-    if (it->is_directory(ignored) && !prepare::input::ProjectKind(it->path()).empty() &&
-        !std::filesystem::is_directory(it->path() / "images", ignored)) {
-      it.disable_recursion_pending();
-      continue;
-    }
-    if (!it->is_regular_file(error)) continue;
-    const std::string extension = base::LowerCase(it->path().extension().string());
-    if (!kImages.contains(extension)) continue;
-    const auto time = std::chrono::duration_cast<std::chrono::seconds>(it->last_write_time(error).time_since_epoch()).count();
-    lines.push_back(it->path().lexically_relative(folder).generic_string() + "|" + std::to_string(it->file_size(error)) + "|" + std::to_string(time));
+  for (const std::filesystem::path& file : FilesBelow(folder, except)) {
+    if (IsPicture(file)) lines.push_back(LineOf(file, folder));
   }
-  std::sort(lines.begin(), lines.end());
-  std::string all;
-  for (const std::string& line : lines) all += line + "\n";
-  return std::to_string(lines.size()) + " images, " + base::HashHex(all);
+  return IdentityOf(std::move(lines));
+}
+
+std::string DevelopedIdentity(const std::filesystem::path& folder, const std::filesystem::path& except) {
+  const std::vector<std::filesystem::path> files = FilesBelow(folder, except);
+  const auto name = [](std::filesystem::path file) { return base::LowerCase(file.replace_extension().string()); };
+  std::set<std::string> pictures;
+  for (const std::filesystem::path& file : files) {
+    if (IsPicture(file)) pictures.insert(name(file));
+  }
+  std::vector<std::string> lines;
+  for (const std::filesystem::path& file : files) {
+    if (image::NeedsDeveloping(file.filename().string()) && !pictures.contains(name(file))) lines.push_back(LineOf(file, folder));
+  }
+  return lines.empty() ? std::string() : IdentityOf(std::move(lines));
 }
 
 }  // namespace skyquilt::coordinator

@@ -54,5 +54,7 @@ std::string FileIdentity(const std::filesystem::path& file);
 // Identity of the names, sizes and modification times of all images below a folder, without the folder `except`. Image content is not read, so
 // this is fast even for thousands of photos.
 std::string PhotosIdentity(const std::filesystem::path& folder, const std::filesystem::path& except);
+// The same of HEIC and raw files without a JPEG, PNG or TIFF of their name beside them, which are photos themselves; empty when there are none.
+std::string DevelopedIdentity(const std::filesystem::path& folder, const std::filesystem::path& except);
 
 }  // namespace skyquilt::coordinator

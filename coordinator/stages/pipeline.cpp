@@ -7,6 +7,8 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
+#include "prepare/video/find_videos.h"
+#include "prepare/video/video_frames.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -27,14 +29,21 @@ void SimulateStage(Pipeline& pipeline, const std::filesystem::path& folder) {
   RunStage(own, "simulate");
 }
 
+void TakePhotos(Pipeline& pipeline, const std::filesystem::path& photos) {
+  if (pipeline.videos.empty()) {
+    if (!std::filesystem::is_directory(photos)) throw base::InputError(photos, "no such folder", "Give the folder that holds the photos");
+    pipeline.photos = std::filesystem::absolute(photos).lexically_normal();
+    pipeline.videos = prepare::video::FindVideos({pipeline.photos});
+  }
+  if (!pipeline.videos.empty()) pipeline.photos = prepare::video::FramesFolder(pipeline.project.SurveyFolder());
+}
+
 void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model) {
-  const auto absolute = [](const std::filesystem::path& path) { return path.empty() ? path : std::filesystem::absolute(path).lexically_normal(); };
-  if (!std::filesystem::is_directory(photos)) throw base::InputError(photos, "no such folder", "Give the folder that holds the photos");
   if (!model.empty() && !std::filesystem::exists(model)) {
     throw base::InputError(model, "no such folder or file", "Give the camera model of the photos: a folder or file that docs/input_models.md lists");
   }
-  pipeline.photos = absolute(photos);
-  pipeline.model = absolute(model);
+  TakePhotos(pipeline, photos);
+  pipeline.model = model.empty() ? model : std::filesystem::absolute(model).lexically_normal();
   RunStage(pipeline, "prepare");
   ProvideFirstPicture(pipeline);
 }

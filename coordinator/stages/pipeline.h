@@ -35,6 +35,9 @@ struct Pipeline {
   // Inputs of "prepare". model may be empty: COLMAP is run, or the photos are a simulated survey.
   std::filesystem::path photos = {};
   std::filesystem::path model = {};
+  // Videos whose frames are the photos. Video files are put here before RunStages or PrepareStage, which then need no folder; those of a folder
+  // without photos are found there.
+  std::vector<std::filesystem::path> videos = {};
   // Page and files of an exported tour, which the viewer has too: stage "tour" needs it.
   std::function<tour::ExportParts(const Project& project)> tour_parts = {};
   // Keeps run.within_s in RunStages (timed_run.h); null: the stages take as long as they take.
@@ -51,6 +54,8 @@ void RequireSameConfiguration(Pipeline& pipeline, const std::string& first);
 
 // Makes a simulated survey in its own folder.
 void SimulateStage(Pipeline& pipeline, const std::filesystem::path& folder);
+// Sets pipeline.photos and videos. `photos`: a folder of photos, or of videos; not used when pipeline.videos are given. Throws base::InputError.
+void TakePhotos(Pipeline& pipeline, const std::filesystem::path& photos);
 // Also chooses between settings and level_settings when it makes a survey, and writes level_settings to config.toml, for later commands. Makes the
 // first picture (first_picture.h) as soon as it can, unless there is one.
 void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model);

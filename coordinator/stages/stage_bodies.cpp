@@ -12,6 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/thread_pool.h"
+#include "core/image/video_writer.h"
 #include "core/scene/scene.h"
 #include "core/survey/view_kind.h"
 #include "evaluate/evaluate.h"
@@ -23,7 +24,6 @@
 #include "products/elevation.h"
 #include "products/map_products.h"
 #include "products/render_views.h"
-#include "products/video_writer.h"
 #include "simulate/simulate.h"
 
 namespace skyquilt::coordinator {
@@ -71,7 +71,8 @@ std::string SimulateBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 }
 
 std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
-  const prepare::PrepareInput input{.photos = pipeline.photos, .model = pipeline.model, .out_folder = pipeline.project.SurveyFolder()};
+  const prepare::PrepareInput input{
+      .photos = pipeline.photos, .model = pipeline.model, .out_folder = pipeline.project.SurveyFolder(), .videos = pipeline.videos};
   base::ThreadPool threads(pipeline.settings.run.threads);
   RankTasks ranks(pipeline.comm, pipeline.settings.run, pipeline.project.folder, pipeline.verbose, pipeline.quiet);
   const auto show = [&](const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known) {
@@ -164,7 +165,7 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
     products::WriteElevationsOfWalls(scene.info(), survey, products::CasterOf(scene, appearance, threads), options, pipeline.settings.run.image_width,
                                      folder, true);
   }
-  if (options.video_seconds > 0.0 && !products::CanWriteVideos()) {
+  if (options.video_seconds > 0.0 && !image::CanWriteVideos()) {
     base::LogWarning(
         "no video was made: the program ffmpeg is not installed. Install it (Debian, Ubuntu: apt install ffmpeg), then: skyquilt render {} --video",
         pipeline.project.folder.string());

@@ -10,6 +10,7 @@
 #include "core/scene/field_file.h"
 #include "prepare/georeference/tags/photo_positions.h"
 #include "prepare/input/masks/masks.h"
+#include "prepare/video/find_videos.h"
 #include "tour/export/staged_folder.h"
 
 namespace skyquilt::coordinator {
@@ -41,7 +42,7 @@ std::string SurveyIdentity(const Project& project) {
 
 // Of masks that were found beside the photo folder, images/; empty when there are none. Those in the folder are among its pictures.
 std::string MasksIdentity(const Pipeline& pipeline) {
-  if (!pipeline.settings.prepare.masks.empty() || !std::filesystem::is_directory(pipeline.photos)) return "";
+  if (!pipeline.settings.prepare.masks.empty() || !pipeline.videos.empty() || !std::filesystem::is_directory(pipeline.photos)) return "";
   const prepare::input::MaskPlaces places = prepare::input::FindMaskPlaces(std::filesystem::canonical(pipeline.photos), "", {});
   std::string identity;
   for (const std::filesystem::path& folder : places.folders) identity += PhotosIdentity(folder, pipeline.project.folder);
@@ -49,11 +50,27 @@ std::string MasksIdentity(const Pipeline& pipeline) {
   return identity.empty() ? "" : base::HashHex(identity);
 }
 
+// They matter to videos alone: records of surveys of photos do without.
+const std::vector<std::string>& VideoOptionNames() {
+  static const std::vector<std::string> names = {"prepare.video_overlap", "prepare.video_limit", "prepare.video_size",
+                                                 "prepare.video_clock_offset_s"};
+  return names;
+}
+
 // Files that only some surveys have count where they are, and the poses of held-out photos and the bands where they are not the default, so that
 // records of older programs stay valid.
 FlatOptions PrepareInputs(const Pipeline& pipeline) {
-  FlatOptions inputs{
-      {"photos", pipeline.photos.string()}, {"model", pipeline.model.string()}, {"images", PhotosIdentity(pipeline.photos, pipeline.project.folder)}};
+  FlatOptions inputs{{"photos", pipeline.photos.string()}, {"model", pipeline.model.string()}};
+  if (pipeline.videos.empty()) {
+    inputs["images"] = PhotosIdentity(pipeline.photos, pipeline.project.folder);
+    const std::string developed = DevelopedIdentity(pipeline.photos, pipeline.project.folder);
+    if (!developed.empty()) inputs["HEIC and raw"] = developed;
+  } else {
+    // Their frames are a result.
+    inputs["videos"] = base::HashHex(prepare::video::VideosIdentity(pipeline.videos));
+    FlatOptions options = Select(pipeline.settings.Flat(), VideoOptionNames());
+    inputs.merge(options);
+  }
   if (std::filesystem::is_regular_file(pipeline.model)) inputs["model file"] = FileIdentity(pipeline.model);
   const std::filesystem::path images = pipeline.photos / "images";
   std::string positions;
@@ -172,7 +189,12 @@ std::vector<Stage> MakeTable() {
   return {
       {.name = "simulate",
        .options = {"simulate."},
-       .inputs = [](const Pipeline&) { return FlatOptions(); },
+       .ignored_options = {"simulate.video_fps"},  // an input, so that surveys of older programs stay valid
+       .inputs =
+           [](const Pipeline& pipeline) {
+             const int fps = pipeline.settings.simulate.video_fps;
+             return fps > 0 ? FlatOptions{{"simulate.video_fps", std::to_string(fps)}} : FlatOptions();
+           },
        .outputs = [](const Project& p) { return Paths{p.SimulatedFolder()}; },
        .completion_files = [](const Project& p) { return Paths{p.folder / "simulate.json"}; },
        .body = SimulateBody,
@@ -180,7 +202,8 @@ std::vector<Stage> MakeTable() {
        .dated = false},
       {.name = "prepare",
        .options = {"prepare."},
-       .ignored_options = {"prepare.holdout_poses", "prepare.bands", "prepare.photos"},  // inputs
+       .ignored_options = {"prepare.holdout_poses", "prepare.bands", "prepare.photos", "prepare.video_overlap", "prepare.video_limit",
+                           "prepare.video_size", "prepare.video_clock_offset_s"},  // inputs
        .inputs = PrepareInputs,
        .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
        .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },

@@ -16,6 +16,8 @@
 #include "core/base/log.h"
 #include "core/base/thread_pool.h"
 #include "partition/block.h"
+#include "prepare/prepare_options.h"
+#include "prepare/video/video_frames.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -49,6 +51,16 @@ std::vector<std::string> StagesOfRun() {
     if (stage.separate_folder == nullptr) names.push_back(stage.name);
   }
   return names;
+}
+
+// Their number is needed for the plan. Stage "prepare" finds them finished.
+void ProvideFramesOfVideos(Pipeline& pipeline) {
+  if (pipeline.videos.empty()) return;
+  if (pipeline.restart) {
+    RemoveStagesFrom(pipeline.project, "prepare");
+    pipeline.restart = false;
+  }
+  prepare::video::ProvideFrames(pipeline.videos, prepare::VideoOptionsOf(pipeline.settings.prepare), pipeline.project.SurveyFolder());
 }
 
 }  // namespace
@@ -116,13 +128,15 @@ void TimedRun::CheckRoom(const Pipeline& pipeline) const {
 
 void TimedRun::Start(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model) {
   ledger_.Start();
+  TakePhotos(pipeline, photos);
+  ProvideFramesOfVideos(pipeline);
   base::ThreadPool threads(pipeline.settings.run.threads);
-  predictor_.size() = SizeOfRanks(pipeline, CountPhotos(photos, model, pipeline.settings, pipeline.project.folder, threads));
+  predictor_.size() = SizeOfRanks(pipeline, CountPhotos(pipeline.photos, model, pipeline.settings, pipeline.project.folder, threads));
   const bool poses = !IsDone(pipeline, "prepare"), trains = !IsDone(pipeline, "train");
   if (!IsDecided(pipeline, "prepare")) CheckRoom(pipeline);
   if (trains) {
     const RateSource source{
-        .photos = photos, .model = model, .work_folder = pipeline.project.StateFolder() / "trial", .poses = poses, .photos_to_decode = true};
+        .photos = pipeline.photos, .model = model, .work_folder = pipeline.project.StateFolder() / "trial", .poses = poses, .photos_to_decode = true};
     predictor_.rates() = MeasureRates(predictor_.size(), pipeline.settings, source, threads);
   }
   LookAtProject(pipeline, "");

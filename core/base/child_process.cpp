@@ -142,21 +142,28 @@ std::string ChildEnd::Text(const std::string& name) const {
 }
 
 ChildProcess ChildProcess::StartReading(const Command& command) {
-  return Start(command, true);
+  return Start(command, Channels::kReading);
+}
+
+ChildProcess ChildProcess::StartReadingBoth(const Command& command) {
+  return Start(command, Channels::kReadingBoth);
 }
 
 ChildProcess ChildProcess::StartWriting(const Command& command) {
-  return Start(command, false);
+  return Start(command, Channels::kWriting);
 }
 
-ChildProcess ChildProcess::Start(const Command& command, bool reading) {
-  std::array<int, 2> ends{}, pipe_ends{};
+ChildProcess ChildProcess::Start(const Command& command, Channels channels) {
+  const bool reading = channels != Channels::kWriting;
+  std::array<int, 2> ends{}, pipe_ends{}, message_ends = {-1, -1};
   // For writing use a socket instead of a pipe: send() can be told not to raise SIGPIPE when the program has ended.
   if ((reading ? pipe2(ends.data(), O_CLOEXEC) : socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data())) != 0)
     throw StartError(StartError::Missing::kChannel, errno);
   ChannelEnd ours(ends[0]), its(ends[1]);
   if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) throw StartError(StartError::Missing::kChannel, errno);
   ChannelEnd failure(pipe_ends[0]), its_failure(pipe_ends[1]);
+  if (channels == Channels::kReadingBoth && pipe2(message_ends.data(), O_CLOEXEC) != 0) throw StartError(StartError::Missing::kChannel, errno);
+  ChannelEnd messages(message_ends[0]), its_messages(message_ends[1]);
   // Allocate before the fork: after it only async-signal-safe calls are allowed in the child, as other threads may have held locks.
   std::vector<std::string> arguments = {command.program.string()};
   arguments.insert(arguments.end(), command.arguments.begin(), command.arguments.end());
@@ -173,7 +180,7 @@ ChildProcess ChildProcess::Start(const Command& command, bool reading) {
     dup2(reading ? open("/dev/null", O_RDONLY) : its.get(), STDIN_FILENO);
     if (reading) {
       dup2(its.get(), STDOUT_FILENO);
-      dup2(its.get(), STDERR_FILENO);
+      dup2(channels == Channels::kReadingBoth ? its_messages.get() : its.get(), STDERR_FILENO);
     }
     execve(argument_pointers[0], argument_pointers.data(), environment_pointers.data());
     const int code = errno;
@@ -181,26 +188,31 @@ ChildProcess ChildProcess::Start(const Command& command, bool reading) {
     _exit(kCannotExecute);
   }
   its.Close();
+  its_messages.Close();
   its_failure.Close();
   if (const int code = ExecutionError(failure.get()); code != 0) {
     WaitFor(process);
     throw StartError(StartError::Missing::kProgram, code);
   }
-  return ChildProcess(process, ours.Release(), reading);
+  return ChildProcess(process, ours.Release(), messages.Release(), reading);
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
-    : process_(std::exchange(other.process_, -1)), channel_(std::exchange(other.channel_, -1)), leads_group_(other.leads_group_) {}
+    : process_(std::exchange(other.process_, -1)),
+      channel_(std::exchange(other.channel_, -1)),
+      messages_(std::exchange(other.messages_, -1)),
+      leads_group_(other.leads_group_) {}
 
 ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
   std::swap(process_, other.process_);
   std::swap(channel_, other.channel_);
+  std::swap(messages_, other.messages_);
   std::swap(leads_group_, other.leads_group_);
   return *this;
 }
 
 ChildProcess::~ChildProcess() {
-  CloseChannel();
+  CloseChannels();
   if (process_ <= 0) return;
   Signal(SIGKILL);
   WaitFor(process_);
@@ -217,6 +229,28 @@ bool ChildProcess::Receive(std::string* text) {
   return true;
 }
 
+bool ChildProcess::ReceiveBoth(std::string* output, std::string* messages) {
+  // poll ignores what is closed, which is -1.
+  std::array<pollfd, 2> waiting = {pollfd{channel_, POLLIN, 0}, pollfd{messages_, POLLIN, 0}};
+  if (channel_ < 0 && messages_ < 0) return false;
+  const int ready = poll(waiting.data(), waiting.size(), kPollMs);
+  if (ready <= 0) return ready == 0 || errno == EINTR;
+  std::array<char, 65536> buffer{};
+  const auto read_one = [&buffer](const pollfd& one, int* channel, std::string* text) {
+    if ((one.revents & (POLLIN | POLLHUP | POLLERR)) == 0) return;
+    const ssize_t n_read = ReadAgain(one.fd, buffer.data(), buffer.size());
+    if (n_read > 0) {
+      text->append(buffer.data(), static_cast<size_t>(n_read));
+    } else {
+      close(std::exchange(*channel, -1));
+    }
+  };
+  // Messages first: they say what the data that follow are.
+  read_one(waiting[1], &messages_, messages);
+  read_one(waiting[0], &channel_, output);
+  return channel_ >= 0 || messages_ >= 0;
+}
+
 bool ChildProcess::Send(std::span<const uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t sent = send(channel_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -228,7 +262,7 @@ bool ChildProcess::Send(std::span<const uint8_t> bytes) {
 }
 
 ChildEnd ChildProcess::Wait() {
-  CloseChannel();
+  CloseChannels();
   return WaitFor(std::exchange(process_, -1));
 }
 
@@ -248,8 +282,10 @@ void ChildProcess::Terminate() {
   WaitFor(std::exchange(process_, -1));
 }
 
-void ChildProcess::CloseChannel() {
-  if (channel_ >= 0) close(std::exchange(channel_, -1));
+void ChildProcess::CloseChannels() {
+  for (int* channel : {&channel_, &messages_}) {
+    if (*channel >= 0) close(std::exchange(*channel, -1));
+  }
 }
 
 void ChildProcess::Signal(int number) const {

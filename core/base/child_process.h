@@ -56,6 +56,9 @@ class ChildProcess {
   // Its output (stdout and stderr) is read with Receive, its input is empty. It leads a process group of its own, so that the processes it starts are
   // ended with it. Throws StartError.
   static ChildProcess StartReading(const Command& command);
+  // The same, but stdout and stderr are read apart, with ReceiveBoth: for programs that write data to one and messages to the other. Throws
+  // StartError.
+  static ChildProcess StartReadingBoth(const Command& command);
   // Its input is written with Send, its output goes where our own goes. It stays in our process group: a signal from the terminal (Ctrl-C) reaches it
   // too. Throws StartError.
   static ChildProcess StartWriting(const Command& command);
@@ -66,6 +69,9 @@ class ChildProcess {
 
   // Appends new output to `text`; waits at most 0.2 s for it, so it may append nothing. False at the end of the output.
   bool Receive(std::string* text);
+  // Appends new output and new messages, of whichever there is some; waits at most 0.2 s, so it may append nothing. False at the end of both. Only
+  // after StartReadingBoth.
+  bool ReceiveBoth(std::string* output, std::string* messages);
   // Blocks until all bytes are written. False when the program has ended; Wait then tells why. Never raises SIGPIPE.
   bool Send(std::span<const uint8_t> bytes);
   // Closes our end of the pipe or socket and waits until the program ends.
@@ -74,13 +80,17 @@ class ChildProcess {
   void Terminate();
 
  private:
-  ChildProcess(pid_t process, int channel, bool leads_group) : process_(process), channel_(channel), leads_group_(leads_group) {}
-  static ChildProcess Start(const Command& command, bool reading);
-  void CloseChannel();
+  enum class Channels { kWriting, kReading, kReadingBoth };
+
+  ChildProcess(pid_t process, int channel, int messages, bool leads_group)
+      : process_(process), channel_(channel), messages_(messages), leads_group_(leads_group) {}
+  static ChildProcess Start(const Command& command, Channels channels);
+  void CloseChannels();
   void Signal(int number) const;
 
   pid_t process_ = -1;
   int channel_ = -1;
+  int messages_ = -1;  // its stderr, where that is read apart
   bool leads_group_ = false;
 };
 

@@ -16,6 +16,8 @@ std::unique_lock<std::mutex> LockExiv2() {
     // Vendors' maker notes cause many irrelevant warnings.
     Exiv2::LogMsg::setLevel(Exiv2::LogMsg::mute);
     Exiv2::XmpParser::initialize();
+    // The container of HEIC and CR3.
+    Exiv2::enableBMFF(true);
     Exiv2::XmpProperties::registerNs("http://www.dji.com/drone-dji/1.0/", "drone-dji");
     Exiv2::XmpProperties::registerNs("http://pix4d.com/camera/1.0/", "Camera");
     return true;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/text.h"
+#include "core/image/develop.h"
 #include "prepare/input/file_names.h"
 #include "prepare/input/glob.h"
 #include "prepare/input/list_files.h"
@@ -42,9 +43,11 @@ bool IsTiff(const Candidate& one) {
   return extension == ".tif" || extension == ".tiff";
 }
 
-// JPEGs have the camera's tags, PNGs hardly any.
+// JPEGs have the camera's tags, PNGs hardly any. What must be developed takes longest.
 int RankOfForm(const Candidate& one) {
   const std::string extension = base::LowerCase(one.parts.extension);
+  if (one.group == FileGroup::kHeic) return 3;
+  if (one.group == FileGroup::kRaw) return 4;
   return extension == ".png" ? 2 : IsTiff(one) ? 1 : 0;
 }
 
@@ -136,6 +139,10 @@ class Chooser {
     switch (one.group) {
       case FileGroup::kPicture:
         break;
+      case FileGroup::kHeic:
+      case FileGroup::kRaw:
+        if (image::NeedsDeveloping(file_name)) break;
+        return set(FileKind::kUnread, "cannot be read (" + GroupName(one.group) + ")");
       case FileGroup::kOther:
         return set(IsModelName(file_name) ? FileKind::kModel : FileKind::kOther,
                    IsModelName(file_name) ? "camera model, used if given with --model" : "not a picture");
@@ -320,7 +327,8 @@ class Chooser {
 
   void UsePatterns(const std::vector<std::string>& patterns) {
     for (Candidate& one : all_) {
-      const bool possible = one.group == FileGroup::kPicture && one.file.kind != FileKind::kMask && one.file.kind != FileKind::kSystem;
+      const bool picture = one.group == FileGroup::kPicture || image::NeedsDeveloping(one.parts.stem + one.parts.extension);
+      const bool possible = picture && one.file.kind != FileKind::kMask && one.file.kind != FileKind::kSystem;
       if (!possible) continue;
       if (MatchesAny(patterns, one.file.name)) {
         if (!one.file.Taken()) one.file.reason = "chosen by prepare.photos (" + KindName(one.file.kind) + ")";

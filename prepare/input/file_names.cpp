@@ -78,17 +78,16 @@ std::string GroupName(FileGroup group) {
 
 std::string HowToConvert(FileGroup group) {
   switch (group) {
-    case FileGroup::kHeic:
-      return "Convert them with 'heif-convert X.HEIC X.jpg' (Debian: libheif-examples) or export them as JPEG, and copy their tags with 'exiftool "
-             "-TagsFromFile X.HEIC -all:all X.jpg'";
     case FileGroup::kRaw:
-      return "Develop them to JPEG or TIFF with one setting for all, for instance with 'darktable-cli X.DNG X.jpg' or 'rawtherapee-cli -c FOLDER', "
+      return "Of other raw formats than DNG, CR2, CR3, NEF, ARW, RAF, ORF, RW2, PEF and SRW none is read. Develop them to JPEG or TIFF with one "
+             "setting for all, for instance with 'darktable-cli X.DNG X.jpg' or 'rawtherapee-cli -c FOLDER', "
              "which keep their tags";
     case FileGroup::kVideo:
-      return "Take single frames, for instance one per second with 'ffmpeg -i X.MP4 -vf fps=1 -q:v 2 frames/%05d.jpg'; they have no GPS tags";
+      return "Frames are taken from videos that are given as such, 'skyquilt prepare X.MP4 -o DIR', or in a folder without photos";
     case FileGroup::kOtherPicture:
       return "Convert them to JPEG, PNG or TIFF, for instance with ImageMagick's 'convert'";
     case FileGroup::kPicture:
+    case FileGroup::kHeic:
     case FileGroup::kOther:
       break;
   }

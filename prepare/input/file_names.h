@@ -15,7 +15,7 @@ enum class FileGroup {
   kOther          // no picture
 };
 FileGroup GroupOf(const std::string& name);
-// As in "3 HEIC pictures", and how to make photos of them. Empty for kPicture and kOther.
+// As in "3 raw pictures", and how to make photos of them. Empty for kPicture and kOther; all of kHeic are read.
 std::string GroupName(FileGroup group);
 std::string HowToConvert(FileGroup group);
 

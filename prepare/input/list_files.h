@@ -50,10 +50,10 @@ struct ListOptions {
   std::string patterns;                     // prepare.photos (glob.h): photos are the pictures that match, whatever else would be left out
 };
 
-// All files below `root` in name order (bytes). A photo is a jpg, jpeg, png, tif or tiff that is not
+// All files below `root` in name order (bytes). A photo is a jpg, jpeg, png, tif or tiff, or a HEIC or raw file (core/image/develop.h), that is not
 //   - a single band beside photos in colour; where there are hardly any, one band is taken for all
 //   - a picture of heat beside photos in colour, by its name or by its size
-//   - a PNG or TIFF of a shot of which there is a JPEG in the same folder (then TIFF before PNG)
+//   - another form of a shot in the same folder: of JPEG, TIFF, PNG, HEIC and raw the first is taken
 //   - a mask, thumbnail or map, by name, folder or header
 //   - in the folder of another project, or hidden
 // Patterns overrule all of these but masks and what is hidden. `threads`: reads the pictures' headers.
@@ -67,7 +67,7 @@ std::vector<InputFile> ChooseFiles(const std::vector<FoundFile>& found, const st
 // Names of the photos, in their order.
 std::vector<std::string> TakenNames(const std::vector<InputFile>& files);
 
-// Whether a file can be a photo by its extension and is not hidden. Nothing is read.
+// Whether a file is a JPEG, PNG or TIFF by its extension and not hidden. Nothing is read.
 bool LooksLikePhoto(const std::filesystem::path& file);
 
 }  // namespace skyquilt::prepare::input

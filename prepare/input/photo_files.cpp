@@ -7,6 +7,7 @@
 #include "core/base/log.h"
 #include "core/base/memory_map.h"
 #include "core/base/progress.h"
+#include "core/image/develop.h"
 #include "core/image/image.h"
 #include "core/image/jpeg_structure.h"
 
@@ -36,8 +37,12 @@ PhotoSet ReadPhotos(const fs::path& root, const std::vector<std::string>& names,
     files[i].name = names[i];
     try {
       if (fs::file_size(file) == 0) throw base::InputError(file, "is empty", "Copy the photo again or remove it from the folder");
-      image::ReadImageSize(file, &files[i].width, &files[i].height);
-      CheckComplete(file);
+      if (image::NeedsDeveloping(names[i])) {
+        image::ReadDevelopedSize(file, &files[i].width, &files[i].height);
+      } else {
+        image::ReadImageSize(file, &files[i].width, &files[i].height);
+        CheckComplete(file);
+      }
       files[i].tags = survey::ReadPhotoTags(file);
     } catch (const base::InputError& error) {
       problems[i] = error.what();

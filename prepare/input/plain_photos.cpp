@@ -15,6 +15,7 @@
 #include "core/base/progress.h"
 #include "core/base/text.h"
 #include "core/gis/photo_bands.h"
+#include "core/image/develop.h"
 #include "core/image/image.h"
 #include "core/image/pixel_format.h"
 #include "prepare/input/band_choice.h"
@@ -42,6 +43,7 @@ struct PhotoSource {
   image::PixelFormat format;
   std::vector<int> bands;  // as read: for CMYK all four
   std::string problem;     // not empty: it is left out
+  bool develop = false;    // HEIC or raw: no bands are chosen
   PhotoRange range;
 };
 
@@ -121,18 +123,23 @@ std::vector<image::PixelFormat> ReadFormats(const fs::path& photo_root, const Ph
   std::vector<image::PixelFormat> formats(photos.usable.size());
   threads.ParallelFor(static_cast<int64_t>(formats.size()), [&](int64_t task, int /*thread*/) {
     const auto i = static_cast<size_t>(task);
-    formats[i] = image::ReadPixelFormat(photo_root / photos.usable[i].name);
+    // The header of a raw file tells of its thumbnail.
+    if (!image::NeedsDeveloping(photos.usable[i].name)) formats[i] = image::ReadPixelFormat(photo_root / photos.usable[i].name);
   });
   return formats;
 }
 
 // Photos that are not plain, and those that the option is about.
-std::vector<PhotoSource> FindSources(const std::vector<image::PixelFormat>& formats, const std::string& bands) {
+std::vector<PhotoSource> FindSources(const PhotoSet& photos, const std::vector<image::PixelFormat>& formats, const std::string& bands) {
   std::vector<PhotoSource> sources;
   for (size_t i = 0; i < formats.size(); ++i) {
+    if (image::NeedsDeveloping(photos.usable[i].name)) {
+      sources.push_back({.photo = i, .format = {}, .bands = {}, .problem = {}, .develop = true, .range = {}});
+      continue;
+    }
     const bool chosen = !bands.empty() && formats[i].kind == image::FileKind::kTiff && formats[i].bands > 1;
     if (image::IsPlain(formats[i]) && !chosen) continue;
-    sources.push_back({.photo = i, .format = formats[i], .bands = {}, .problem = {}, .range = {}});
+    sources.push_back({.photo = i, .format = formats[i], .bands = {}, .problem = {}, .develop = false, .range = {}});
   }
   return sources;
 }
@@ -258,14 +265,16 @@ bool IsMade(const fs::path& copies, const std::string& asked, const PhotoSet& ph
 
 // For the log: how many photos have which bands, of how many bits.
 std::string DescribeSources(const std::vector<PhotoSource>& sources) {
-  int most_bits = 0;
-  size_t n_floating = 0, n_several = 0;
+  int most_bits = 8;
+  size_t n_floating = 0, n_several = 0, n_developed = 0;
   for (const PhotoSource& source : sources) {
+    n_developed += source.develop ? 1 : 0;
     most_bits = std::max(most_bits, source.format.bits);
     n_floating += source.format.floating ? 1 : 0;
     n_several += source.format.bands > 3 ? 1 : 0;
   }
   std::string text = fmt::format("{} photos of up to {} bits", sources.size(), most_bits);
+  if (n_developed > 0) text += fmt::format(", {} of HEIC or raw files, which are developed", n_developed);
   if (n_floating > 0) text += fmt::format(", {} of floating point", n_floating);
   if (n_several > 0) {
     std::vector<std::string> bands;
@@ -280,7 +289,7 @@ std::string DescribeSources(const std::vector<PhotoSource>& sources) {
 fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, const fs::path& folder, PhotoSet& photos, base::ThreadPool& threads) {
   const std::vector<image::PixelFormat> formats = ReadFormats(photo_root, photos, threads);
   LogGrey(formats);
-  std::vector<PhotoSource> sources = FindSources(formats, bands);
+  std::vector<PhotoSource> sources = FindSources(photos, formats, bands);
   if (sources.empty()) {
     if (!bands.empty()) base::LogWarning("prepare.bands = \"{}\" has no effect: no photo is a TIFF of several bands", bands);
     fs::remove_all(folder);
@@ -302,6 +311,7 @@ fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, c
   std::string left_out;
   ForSources(sources, "read range of photos", threads, [&](PhotoSource& source) {
     const PhotoFile& photo = photos.usable[source.photo];
+    if (source.develop) return;
     ChooseBandsOf(photo_root / photo.name, photo.tags.band_names, bands, source);
   });
   NoteLeftOut(sources, photos, left_out);
@@ -321,6 +331,15 @@ fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, c
   for (const PhotoFile& photo : photos.usable) fs::create_directories((copies / photo.name).parent_path());
   ForSources(sources, "convert photos", threads, [&](const PhotoSource& source) {
     const std::string& name = photos.usable[source.photo].name;
+    if (source.develop) {
+      const PhotoFile& photo = photos.usable[source.photo];
+      const image::Image8 developed = image::DevelopPhoto(photo_root / name);
+      if (developed.width != photo.width || developed.height != photo.height) {
+        throw base::InputError(photo_root / name, "is developed to another size than it says", "Export it as JPEG or TIFF");
+      }
+      base::WriteFileAtomically(copies / name, image::EncodePng(developed, kPngLevel));
+      return;
+    }
     const image::Image8 image = Converted(gis::PhotoBands(photo_root / name), source, is_deep(source) ? white.value : 255.0);
     base::WriteFileAtomically(copies / name, image::EncodePng(image, kPngLevel));
   });

@@ -1,5 +1,5 @@
-// Photos that COLMAP or our decoder cannot read as they are (more than 8 bits per number, floating point, several bands, CMYK in TIFF) are converted
-// once, so that the search for poses, training and all later stages see the same pictures.
+// Photos that COLMAP or our decoder cannot read as they are (more than 8 bits per number, floating point, several bands, CMYK in TIFF, HEIC, raw) are
+// converted once, so that the search for poses, training and all later stages see the same pictures.
 #pragma once
 
 #include <filesystem>

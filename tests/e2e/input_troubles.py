@@ -110,11 +110,15 @@ def test(skyquilt, folder):
     expect(0 < len(survey_of(folder / "clean_out")["photos"]) < n, text)
     text = prepare("clean", "--set", "prepare.photos=*.bmp", "--restart", status=3)
     expect("prepare.photos" in text and "*.bmp" in text, text)
-    heic = folder / "heic"
-    heic.mkdir()
-    (heic / "IMG_1.HEIC").write_bytes(b"heic")
-    text = skyquilt.call("prepare", heic, "-o", folder / "heic_out", status=3)
-    expect("heif-convert" in text, f"there is no advice how to convert the photos:\n{text}")
+    raw = folder / "raw"
+    raw.mkdir()
+    (raw / "IMG_1.X3F").write_bytes(b"raw")
+    text = skyquilt.call("prepare", raw, "-o", folder / "raw_out", status=3)
+    expect("darktable-cli" in text, f"there is no advice how to convert the photos:\n{text}")
+    for name in ("IMG_1.HEIC", "IMG_2.DNG", "IMG_3.heic"):
+        (raw / name).write_bytes(b"damaged")
+    text = skyquilt.call("prepare", raw, "-o", folder / "raw_out", status=3)
+    expect("IMG_1.HEIC" in text and "IMG_2.DNG" in text, f"damaged photos are not named:\n{text}")
 
     # A table of positions as spreadsheets write them, with axes exchanged.
     lines = ["photo;lat;lon;height"]

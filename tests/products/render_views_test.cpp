@@ -4,64 +4,23 @@
 
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "core/camera/pixel_pitch.h"
 #include "core/image/normal_image.h"
+#include "core/image/video_writer.h"
 #include "products/camera_path.h"
-#include "products/video_writer.h"
 #include "tests/products/analytic_scene.h"
 #include "tests/support/error_of.h"
 #include "tests/support/in_temporary_folder.h"
+#include "tests/support/video_facts.h"
 
 namespace skyquilt::products {
 namespace {
 
 using RenderViewsTest = InTemporaryFolder;
-using VideoWriterTest = InTemporaryFolder;
-
-struct VideoFacts {
-  int frames = 0;
-  int width = 0;
-  int height = 0;
-  std::string rate;  // frames per second, as a fraction
-  std::string codec;
-  std::array<int, 3> middle = {};  // of the first frame: red, green, blue
-};
-
-std::string OutputOf(const std::string& program, std::vector<std::string> arguments) {
-  base::ChildProcess process = base::ChildProcess::StartReading({base::FindProgram(program), std::move(arguments)});
-  std::string text;
-  while (process.Receive(&text)) {
-  }
-  EXPECT_EQ(process.Wait().ShellStatus(), 0) << text;
-  return text;
-}
-
-VideoFacts Inspect(const std::filesystem::path& file) {
-  VideoFacts facts;
-  std::istringstream lines(
-      OutputOf("ffprobe", {"-v", "error", "-count_frames", "-show_entries", "stream=codec_name,width,height,r_frame_rate,nb_read_frames", "-of",
-                           "default=noprint_wrappers=1", file.string()}));
-  for (std::string line; std::getline(lines, line);) {
-    const std::string value = line.substr(line.find('=') + 1);
-    if (line.starts_with("codec_name")) facts.codec = value;
-    if (line.starts_with("width")) facts.width = std::stoi(value);
-    if (line.starts_with("height")) facts.height = std::stoi(value);
-    if (line.starts_with("r_frame_rate")) facts.rate = value;
-    if (line.starts_with("nb_read_frames")) facts.frames = std::stoi(value);
-  }
-  const std::string frame =
-      OutputOf("ffmpeg", {"-v", "error", "-i", "file:" + file.string(), "-frames:v", "1", "-f", "rawvideo", "-pix_fmt", "rgb24", "pipe:1"});
-  const size_t middle = (static_cast<size_t>(facts.height) / 2 * facts.width + facts.width / 2) * 3;
-  EXPECT_EQ(frame.size(), static_cast<size_t>(facts.width) * facts.height * 3);
-  for (size_t c = 0; c < 3 && middle + c < frame.size(); ++c) facts.middle[c] = static_cast<uint8_t>(frame[middle + c]);
-  return facts;
-}
 
 TEST_F(RenderViewsTest, DepthRunsAlongTheRay) {
   const AnalyticScene scene;
@@ -177,7 +136,7 @@ TEST_F(RenderViewsTest, RenderedNormalsAreThoseOfTheRays) {
 }
 
 TEST(RenderVideo, HasOneFramePerView) {
-  if (!CanWriteVideos()) GTEST_SKIP() << "the program ffmpeg is not installed";
+  if (!image::CanWriteVideos()) GTEST_SKIP() << "the program ffmpeg is not installed";
   const TemporaryFolder folder;
   const AnalyticScene scene;
   ProductOptions options;
@@ -194,50 +153,6 @@ TEST(RenderVideo, HasOneFramePerView) {
   EXPECT_EQ(facts.height, 90);
   EXPECT_EQ(facts.rate, "12/1");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "nothing else is left";
-}
-
-TEST_F(VideoWriterTest, WithoutFfmpegItSaysWhatToInstall) {
-  const std::string error = InputErrorOf([&] { VideoWriter(folder_.path() / "video.mp4", 64, 48, 10, "a-program-that-is-not-there"); });
-  EXPECT_NE(error.find("apt install ffmpeg"), std::string::npos) << error;
-  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
-}
-
-TEST_F(VideoWriterTest, WritesH264) {
-  if (!CanWriteVideos()) GTEST_SKIP() << "the program ffmpeg is not installed";
-  const std::filesystem::path file = folder_.path() / "with space 'quote.mp4";
-  VideoWriter video(file, 64, 48, 10);
-  image::Image8 frame(64, 48, 3, 0);
-  for (size_t i = 0; i < frame.data.size(); i += 3) frame.data[i] = 230;
-  for (int i = 0; i < 5; ++i) video.Write(frame);
-  EXPECT_FALSE(std::filesystem::exists(file));
-  video.Close();
-  const VideoFacts facts = Inspect(file);
-  EXPECT_EQ(facts.frames, 5);
-  EXPECT_EQ(facts.codec, "h264");
-  EXPECT_GT(facts.middle[0], 180) << "red stays red";
-  EXPECT_LT(facts.middle[2], 60);
-}
-
-TEST_F(VideoWriterTest, AProgramThatDiesIsReported) {
-  const std::filesystem::path file = folder_.path() / "video.mp4";
-  EXPECT_THROW(
-      {
-        VideoWriter video(file, 640, 480, 10, "false");
-        const image::Image8 frame(640, 480, 3, 0);
-        for (int i = 0; i < 50; ++i) video.Write(frame);
-        video.Close();
-      },
-      base::InputError);
-  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
-}
-
-TEST_F(VideoWriterTest, LeavesNothingWhenAbandoned) {
-  if (!CanWriteVideos()) GTEST_SKIP() << "the program ffmpeg is not installed";
-  {
-    VideoWriter video(folder_.path() / "video.mp4", 64, 48, 10);
-    video.Write(image::Image8(64, 48, 3, 100));
-  }
-  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
 TEST_F(RenderViewsTest, StopsWhenCancelled) {

@@ -5,7 +5,7 @@
 
 #include "core/base/log.h"
 #include "core/base/progress.h"
-#include "products/video_writer.h"
+#include "core/image/video_writer.h"
 #include "tour/ways/film.h"
 
 namespace skyquilt::tour {
@@ -26,7 +26,7 @@ void WriteTourVideo(const Tour& tour, const Heights* heights, const PictureField
     if (!casters.contains(exposure)) casters[exposure] = field.caster(exposure);
     requests.push_back(StillAt(frame.pose.eye_enu, frame.pose.cam_from_enu, frame.pose.fovy_deg, spec.width, spec.height, exposure));
   }
-  products::VideoWriter video(file, spec.width, spec.height, spec.fps);
+  image::VideoWriter video(file, spec.width, spec.height, spec.fps);
   base::Progress progress("video of the tour", static_cast<double>(frames.size()), "frames");
   image::Image8 shown;
   for (size_t i = 0; i < requests.size(); ++i) {

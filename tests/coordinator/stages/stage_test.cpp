@@ -123,6 +123,34 @@ TEST_F(StageFiles, ChosenPhotosAndMasksBesideImagesAreInputsWhereThereAreAny) {
   EXPECT_TRUE(stage.inputs(pipeline).contains("masks"));
 }
 
+TEST_F(StageFiles, VideosAndTheirOptionsAreInputsOfSurveysOfVideosAlone) {
+  const auto comm = comm::ConnectAlone();
+  const std::filesystem::path folder = folder_.path() / "photos";
+  std::filesystem::create_directories(folder);
+  base::WriteFileAtomically(folder / "a.dng", "raw");
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
+  const Stage& stage = StageNamed("prepare");
+  TakePhotos(pipeline, folder);
+  EXPECT_TRUE(pipeline.videos.empty()) << "a raw file is a photo";
+  FlatOptions inputs = stage.inputs(pipeline);
+  EXPECT_TRUE(inputs.contains("images") && inputs.contains("HEIC and raw"));
+  EXPECT_FALSE(inputs.contains("videos") || inputs.contains("prepare.video_overlap"));
+  base::WriteFileAtomically(folder / "a.jpg", "");
+  EXPECT_FALSE(stage.inputs(pipeline).contains("HEIC and raw")) << "another form of a photo";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  base::WriteFileAtomically(folder / "a.mp4", "film");
+  TakePhotos(pipeline, folder);
+  ASSERT_EQ(pipeline.videos.size(), 1U);
+  EXPECT_EQ(pipeline.photos, project_.SurveyFolder() / "frames");
+  inputs = stage.inputs(pipeline);
+  EXPECT_FALSE(inputs.contains("images"));
+  EXPECT_EQ(inputs.at("prepare.video_limit"), "500");
+  EXPECT_FALSE(StageOptions(stage, pipeline.settings).contains("prepare.video_limit"));
+  base::WriteFileAtomically(folder / "a.SRT", "");
+  EXPECT_NE(stage.inputs(pipeline).at("videos"), inputs.at("videos"));
+}
+
 TEST(Stages, HaveUniqueNamesAndNeedOnlyEarlierOnes) {
   std::set<std::string> names;
   for (const Stage& stage : Stages()) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/base/random.h"
+#include "core/image/develop.h"
 #include "prepare/input/file_names.h"
 #include "prepare/input/glob.h"
 #include "prepare/input/list_files.h"
@@ -98,7 +99,8 @@ RC_GTEST_PROP(ChooseFiles, SaysWhyAFileIsLeftOut, ()) {
   for (const InputFile& row : ChooseOf(MakeFiles(random))) {
     const bool told = row.Taken() || !row.reason.empty();
     RC_ASSERT(told);
-    if (row.Taken()) RC_ASSERT(GroupOf(row.name) == FileGroup::kPicture);
+    const bool picture = GroupOf(row.name) == FileGroup::kPicture || image::NeedsDeveloping(row.name);
+    if (row.Taken()) RC_ASSERT(picture);
   }
 }
 

@@ -201,12 +201,13 @@ TEST_F(InputList, MapsAreNoPhotos) {
 }
 
 TEST_F(InputList, OneFormOfAShotIsTaken) {
-  folder_.AddAll({"a.JPG", "a.DNG", "a.heic", "a.tif", "b.tif", "b.png", "c.DNG", "c.JPG.xmp", "d.mp4", "d.jpg"});
-  EXPECT_EQ(folder_.Taken(), (Names{"a.JPG", "b.tif", "d.jpg"}));
+  folder_.AddAll({"a.JPG", "a.DNG", "a.heic", "a.tif", "b.tif", "b.png", "c.DNG", "c.JPG.xmp", "d.mp4", "d.jpg", "e.heic", "e.dng", "f.X3F"});
+  EXPECT_EQ(folder_.Taken(), (Names{"a.JPG", "b.tif", "c.DNG", "d.jpg", "e.heic"}));
   ExpectKind("a.DNG", FileKind::kOtherForm, "another form of a.JPG");
   ExpectKind("a.tif", FileKind::kOtherForm, "another form of a.JPG");
   ExpectKind("d.mp4", FileKind::kOtherForm);
-  ExpectKind("c.DNG", FileKind::kUnread, "raw");
+  ExpectKind("e.dng", FileKind::kOtherForm, "another form of e.heic");
+  ExpectKind("f.X3F", FileKind::kUnread, "raw");
   const Names warnings = InputWarnings(folder_.path(), folder_.List());
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("1 raw pictures are left out"), std::string::npos) << warnings[0];
@@ -241,8 +242,8 @@ TEST_F(InputList, PatternsChooseAndOverrule) {
 
 TEST_F(InputList, AFolderWithoutPhotosSaysWhatItHas) {
   ExpectInFailure("", {"has no photos (.jpg", "Give the folder that holds the photos"});
-  folder_.AddAll({"a.HEIC", "b.HEIC", "x.mp4", "notes.txt"});
-  ExpectInFailure("", {"3 files in formats that cannot be read", "heif-convert"});
+  folder_.AddAll({"a.X3F", "b.X3F", "x.mp4", "notes.txt"});
+  ExpectInFailure("", {"3 files in formats that cannot be read", "darktable-cli"});
 }
 
 TEST_F(InputList, FoldersOfTheProjectItselfAreNoInput) {

@@ -1,4 +1,4 @@
-#include "products/video_writer.h"
+#include "core/image/video_writer.h"
 
 #include <cerrno>
 #include <optional>
@@ -9,7 +9,7 @@
 #include "core/base/errors.h"
 #include "core/base/output_file.h"
 
-namespace skyquilt::products {
+namespace skyquilt::image {
 namespace {
 
 constexpr const char* kFfmpeg = "ffmpeg";
@@ -68,7 +68,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int heigh
 
 VideoWriter::~VideoWriter() = default;
 
-void VideoWriter::Write(const image::Image8& frame) {
+void VideoWriter::Write(const Image8& frame) {
   SKYQUILT_CHECK(frame.width == impl_->width && frame.height == impl_->height && frame.channels == 3,
                  std::to_string(frame.width) + " x " + std::to_string(frame.height));
   if (impl_->ffmpeg->Send(frame.data)) return;
@@ -89,4 +89,4 @@ void VideoWriter::Close() {
   impl_->closed = true;
 }
 
-}  // namespace skyquilt::products
+}  // namespace skyquilt::image

@@ -7,7 +7,7 @@
 
 #include "core/image/image.h"
 
-namespace skyquilt::products {
+namespace skyquilt::image {
 
 // Whether ffmpeg is installed.
 bool CanWriteVideos();
@@ -22,7 +22,7 @@ class VideoWriter {
   VideoWriter& operator=(const VideoWriter&) = delete;
 
   // Adds a frame: RGB, width x height. Throws base::InputError when ffmpeg fails.
-  void Write(const image::Image8& frame);
+  void Write(const Image8& frame);
   void Close();
 
  private:
@@ -30,4 +30,4 @@ class VideoWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace skyquilt::products
+}  // namespace skyquilt::image

@@ -5,6 +5,7 @@
 #include "coordinator/stages/stage.h"
 #include "coordinator/stages/timed_run.h"
 #include "core/base/errors.h"
+#include "masks/make_masks.h"
 #include "viewer/assets.h"
 
 namespace skyquilt::app {
@@ -42,6 +43,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   if (const std::string& masks = settings.prepare.masks; !masks.empty() && masks != "none" && !std::filesystem::exists(masks)) {
     throw base::InputError(masks, "no such folder", "Give the folder of the masks, or one mask for all photos, as prepare.masks, or leave it empty");
   }
+  masks::CheckFiles(settings.masks);
   for (const std::string* file : {&settings.prepare.gcp, &settings.prepare.gcp_marks}) {
     if (!file->empty() && !std::filesystem::is_regular_file(*file)) {
       throw base::InputError(*file, "no such file", "Give the file of the control points or of their marks, or leave the option empty");
@@ -81,6 +83,7 @@ void AddRun(CLI::App& app, CommandState& state) {
                 "scale photos down to this width in pixels for training and scoring; 0: full size");
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
+  AddMaskFlags(*command, overrides);
   AddBoundaryFlag(*command, overrides);
   AddWithinFlag(*command, overrides);
   AddTrainingFlags(*command, overrides);

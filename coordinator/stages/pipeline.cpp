@@ -39,6 +39,10 @@ void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const
   ProvideFirstPicture(pipeline);
 }
 
+void MasksStage(Pipeline& pipeline) {
+  RunStage(pipeline, "masks");
+}
+
 void PartitionStage(Pipeline& pipeline) {
   RunStage(pipeline, "partition");
 }
@@ -80,7 +84,9 @@ void RunStages(Pipeline& pipeline, const std::filesystem::path& photos, const st
     }
     if (pipeline.timed) pipeline.timed->Decide(pipeline, stage.name);
     if (stage.name == "buildings" && !kinds.buildings) continue;
-    if (stage.wanted != nullptr && !stage.wanted(pipeline.settings)) continue;
+    // Masks that are no longer asked for must not stay in use.
+    const bool made = stage.name == "masks" && LoadStamp(pipeline.project, stage.name);
+    if (stage.wanted != nullptr && !stage.wanted(pipeline.settings) && !made) continue;
     if (pipeline.timed) pipeline.timed->Began(stage.name);
     if (stage.name == "prepare") {
       PrepareStage(pipeline, folder, model);

@@ -1,6 +1,5 @@
 #include "coordinator/stages/stage_bodies.h"
 
-#include "coordinator/poses/rank_tasks.h"
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/expected_steps.h"
 #include "coordinator/scheduler/field_context.h"
@@ -8,6 +7,7 @@
 #include "coordinator/stages/first_picture.h"
 #include "coordinator/stages/level_settings.h"
 #include "coordinator/stages/timed_run.h"
+#include "coordinator/tasks/rank_tasks.h"
 #include "core/base/amounts.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
@@ -15,6 +15,7 @@
 #include "core/scene/scene.h"
 #include "core/survey/view_kind.h"
 #include "evaluate/evaluate.h"
+#include "masks/make_masks.h"
 #include "merge/merge.h"
 #include "partition/altitude.h"
 #include "partition/make_blocks.h"
@@ -79,6 +80,13 @@ std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   };
   const survey::Survey survey = prepare::Prepare(input, pipeline.settings.prepare, threads, pipeline.comm.size() > 1 ? &ranks : nullptr, show);
   if (UseLevelSettings(pipeline, survey)) base::WriteFileAtomically(pipeline.project.ConfigFile(), pipeline.settings.Toml());
+  return StageStamp::kDone;
+}
+
+std::string MasksBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
+  MaskTasks ranks(pipeline.comm, pipeline.settings.run, pipeline.project.folder, pipeline.verbose, pipeline.quiet);
+  masks::MakeMasks(pipeline.project.SurveyFolder(), pipeline.settings.masks, pipeline.settings.run.threads,
+                   pipeline.comm.size() > 1 ? &ranks : nullptr);
   return StageStamp::kDone;
 }
 

@@ -1,4 +1,4 @@
-#include "coordinator/poses/rank_tasks.h"
+#include "coordinator/tasks/rank_tasks.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "coordinator/poses/task_message.h"
 #include "coordinator/ranks/rank_messages.h"
+#include "coordinator/tasks/task_message.h"
 #include "core/base/cancel.h"
 #include "core/base/file.h"
 #include "tests/coordinator/scheduler/fake_ranks.h"
@@ -40,7 +40,7 @@ class RankTasksTest : public testing::Test {
       ranks_.emplace_back([this, rank] {
         FakeRank comm(network_, rank);
         const comm::Message message = WaitForMessage(comm);
-        if (message.tag == kTagPoses) ServeTasks(comm, message.bytes);
+        if (message.tag == kTagTasks) ServeTasks(comm, message.bytes);
       });
     }
   }

@@ -47,9 +47,9 @@ void ReadClasses(base::JsonObject& object, SegmentConfig* config) {
 
 SegmentConfig FromObject(base::JsonObject object) {
   SegmentConfig config;
-  config.input_width = static_cast<int>(object.Integer("input_width", 8, kMostInput_px));
-  config.input_height = static_cast<int>(object.Integer("input_height", 8, kMostInput_px));
-  config.photo_width = IntegerOr(object, "photo_width", 8, kMostPhoto_px, config.input_width);
+  config.input_width = static_cast<int>(object.Integer("input_width", 1, kMostInput_px));
+  config.input_height = static_cast<int>(object.Integer("input_height", 1, kMostInput_px));
+  config.photo_width = IntegerOr(object, "photo_width", 1, kMostPhoto_px, config.input_width);
   config.overlap = IntegerOr(object, "overlap", 0, std::min(config.input_width, config.input_height) / 2, 0);
   if (object.Find("scale")) config.scale = object.Number("scale", 1e-9, 1e9);
   ReadThree(object, "mean", &config.mean);

@@ -117,7 +117,7 @@ void Segmenter::RunTile(const image::Image8& rgb, const Tile& tile, image::Image
       const float* const scores = output.values.data() + out_y * out_width + out_x;
       bool ignored = false;
       if (n_classes == 1) {
-        ignored = scores[0] >= config_.threshold;
+        ignored = static_cast<double>(scores[0]) >= config_.threshold;
       } else {
         size_t best = 0;
         for (size_t c = 1; c < n_classes; ++c) best = scores[c * n_out] > scores[best * n_out] ? c : best;

@@ -81,14 +81,15 @@ class Survey:
                 self.photos.append((photo, labels))
         if len(self.photos) < 2:
             fail(f"{folder}: has class images of {len(self.photos)} photos. Simulate it with --set simulate.class_images=all")
-        self.ignored, self.photo_width = ignored, photo_width
+        width = Image.open(self.photos[0][0]).width
+        self.ignored, self.photo_width = ignored, min(photo_width or width, width)
 
     def load(self, index):
         """RGB as height x width x 3 and the pixels to ignore as height x width, both of 8 bits."""
         photo, labels = self.photos[index]
         rgb = Image.open(photo).convert("RGB")
         target = numpy.isin(numpy.asarray(Image.open(labels)), self.ignored).astype(numpy.uint8)
-        if self.photo_width and rgb.width > self.photo_width:
+        if rgb.width > self.photo_width:
             size = (self.photo_width, round(rgb.height * self.photo_width / rgb.width))
             rgb = rgb.resize(size, Image.BOX)
             target = (numpy.asarray(Image.fromarray(target * 255).resize(size, Image.BOX)) > 127).astype(numpy.uint8)
@@ -179,7 +180,7 @@ def train(net, surveys, options):
     print(f"{step} steps in {time.monotonic() - begin:.0f} s")
 
 
-def export(net, options, names):
+def export(net, options, names, photo_width):
     out = Path(options.out)
     out.parent.mkdir(parents=True, exist_ok=True)
     net.eval()
@@ -190,7 +191,7 @@ def export(net, options, names):
         f"# Written by scripts/train_segmenter.py for {out.name}.onnx; docs/input.md explains the keys.\n"
         f"# It finds: {', '.join(names)}.\n"
         f"input_width = {options.tile}\ninput_height = {options.tile}\n"
-        f"photo_width = {options.photo_width or 1000}\noverlap = {options.tile // 8}\n"
+        f"photo_width = {photo_width}\noverlap = {options.tile // 8}\n"
         f"scale = {1 / 255!r}\nmean = {list(MEAN)}\nstd = {list(STD)}\nchannels = \"rgb\"\n"
         f"classes = [\"other\", \"{' or '.join(names)}\"]\nignore = [\"{' or '.join(names)}\"]\n"
         f"dilate_px = 3  # edges, and the shadow right beside\n")
@@ -229,7 +230,7 @@ def main():
     tell("trained on", scores(net, surveys, options.tile, 10))
     for survey in tests:
         tell(str(survey.folder), scores(net, [survey], options.tile))
-    export(net, options, names)
+    export(net, options, names, max(survey.photo_width for survey in surveys))
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include "coordinator/scheduler/train_all.h"
 #include "coordinator/stages/first_picture.h"
 #include "coordinator/stages/level_settings.h"
+#include "coordinator/stages/product_area.h"
 #include "coordinator/stages/timed_run.h"
 #include "coordinator/tasks/rank_tasks.h"
 #include "core/base/amounts.h"
@@ -146,7 +147,7 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 
 std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const products::ProductKinds kinds = KindsOf(pipeline);
-  products::ProductOptions options = pipeline.settings.products;
+  products::ProductOptions options = OptionsOfProducts(pipeline);
   options.ortho = options.ortho && kinds.ortho;
   options.dsm = options.dsm && kinds.dsm;
   if (!kinds.video) options.video_seconds = 0.0;

@@ -235,7 +235,7 @@ std::vector<Stage> MakeTable() {
        .outputs =
            [](const Project& p) {
              const std::filesystem::path folder = survey::MadeMasksFolder(p.SurveyFolder());
-             return Paths{survey::MadeMasksFile(p.SurveyFolder()), folder / "combined", folder / "look"};
+             return Paths{survey::MadeMasksFile(p.SurveyFolder()), folder / "combined", folder / "look", folder / "product_area.geojson"};
            },
        .completion_files = MasksProof,
        .body = MasksBody,

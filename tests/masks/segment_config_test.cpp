@@ -86,7 +86,7 @@ TEST_F(SegmentConfigTest, ErrorsNameFileKeyAndRemedy) {
       {"classes", "classes = []", "classes"},
       {"ignore", "ignore = []", "ignore"},
       {"ignore", "ignore = [\"dog\"]", "'dog'"},
-      {"dilate_px", "dilate = 3", "did you mean 'dilate_px'?"},
+      {"dilate_px", "dilate_pix = 3", "did you mean 'dilate_px'?"},
       {"scale", "scale = -1", "scale"},
       {"scale", "scale = ", "line 6"},
   };

@@ -20,7 +20,7 @@ constexpr const char* kTrainOwn = "train: all but fields";
 
 // Of the stages that render. The search for poses is divided too where COLMAP's features and own matches are made, but a project does not say how
 // long these took.
-constexpr const char* kStagesInOrder[] = {"prepare", "partition", "train", "merge", "products", "surface", "buildings", "evaluate", "tour"};
+constexpr const char* kStagesInOrder[] = {"prepare", "masks", "partition", "train", "merge", "products", "surface", "buildings", "evaluate", "tour"};
 
 double SumOf(const std::vector<double>& seconds) {
   return std::accumulate(seconds.begin(), seconds.end(), 0.0);

@@ -12,10 +12,11 @@
 #include "core/base/order_statistics.h"
 #include "core/base/text.h"
 #include "core/gis/map_projection.h"
+#include "core/scene/point_heights.h"
+#include "core/survey/seen_ground.h"
 #include "products/map_area.h"
 #include "products/photo_map/photo_choice.h"
 #include "products/photo_map/photo_map.h"
-#include "products/sparse_surface.h"
 
 namespace skyquilt::products {
 namespace {
@@ -97,7 +98,7 @@ void WarnOfUnreadable(const std::vector<std::string>& failures, int chosen) {
 
 PointPreview MakePointPreview(const survey::Survey& survey, const ProductOptions& options, const std::filesystem::path& folder,
                               base::ThreadPool& threads) {
-  const std::vector<Eigen::Vector3d> points = SteadyPoints(survey);
+  const std::vector<Eigen::Vector3d> points = survey::SteadyPoints(survey);
   if (points.empty()) {
     throw base::InputError(survey.photo_root, "the survey has no sparse points, so the height of its ground is unknown",
                            "The scene and its orthophoto need them, too: give a COLMAP model with points");
@@ -105,12 +106,12 @@ PointPreview MakePointPreview(const survey::Survey& survey, const ProductOptions
   std::vector<double> heights_z;
   for (const Eigen::Vector3d& point : points) heights_z.push_back(point.z());
   const double ground_z = base::Median(heights_z);
-  const Eigen::AlignedBox2d area = SeenGround(survey, points, ground_z);
+  const Eigen::AlignedBox2d area = survey::SeenGround(survey, points, ground_z);
   FlownAt flown{};
   if (area.isEmpty() || !FindFlownAt(survey, ground_z, &flown)) {
     throw base::InputError(survey.photo_root, "no photo looks down on the ground", "Check the poses: the heights of cameras and points must fit");
   }
-  const scene::HeightMap heights = HeightsOfPoints(points, area);
+  const scene::HeightMap heights = scene::HeightsOfPoints(points, area);
   const scene::SceneInfo info = InfoOf(survey, area, heights);
   gis::MapGrid grid = PlanPreviewGrid(info, flown.gsd_m, kMostPreviewCells);
   const std::optional<gis::Boundary> boundary = BoundaryOf(grid, options);

@@ -8,4 +8,4 @@ case "${1:-}" in
   --check) mode=(--dry-run --Werror) ;;
   *) echo "usage: scripts/format.sh [--check]" >&2; exit 2 ;;
 esac
-find app bench buildings coordinator core evaluate merge odm partition prepare products python simulate surface tests tour viewer worker \( -name '*.h' -o -name '*.cpp' \) -print0 | sort -z | xargs -0 -n 32 clang-format "${mode[@]}"
+find app bench buildings coordinator core evaluate masks merge odm partition prepare products python simulate surface tests tour viewer worker \( -name '*.h' -o -name '*.cpp' \) -print0 | sort -z | xargs -0 -n 32 clang-format "${mode[@]}"

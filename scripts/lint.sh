@@ -10,7 +10,7 @@ set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 build=${SKYQUILT_BUILD:-build/debug}
-folders=(app bench buildings coordinator core evaluate merge odm partition prepare products python simulate surface tests tour viewer worker)
+folders=(app bench buildings coordinator core evaluate masks merge odm partition prepare products python simulate surface tests tour viewer worker)
 
 # The changed .cpp files and those that stand for a changed header.
 changed() {

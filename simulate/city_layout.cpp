@@ -37,6 +37,10 @@ CityLayout::CityLayout(const CityPlan& plan, const Eigen::Vector2d& ground_min, 
   base::Random street_random(seed, 8);
   if (plan.bridge) AddBridge(street_random);
   if (plan.trucks > 0) AddTrucks(plan, street_random);
+  if (plan.lamps > 0) {
+    base::Random lamp_random(seed, 9);
+    AddLamps(plan, lamp_random);
+  }
 }
 
 void CityLayout::AddCells(const CityPlan& plan) {

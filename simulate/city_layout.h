@@ -14,6 +14,7 @@
 #include "core/base/random.h"
 #include "simulate/bridge.h"
 #include "simulate/car.h"
+#include "simulate/person.h"
 #include "simulate/place_spec.h"
 #include "simulate/plane_turn.h"
 #include "simulate/simulated_building.h"
@@ -71,6 +72,7 @@ struct CityContents {
   std::vector<Building> buildings;
   std::vector<Tree> trees;
   std::vector<Car> parked;
+  std::vector<Lamp> lamps;
   std::vector<Pond> ponds;
   std::optional<Bridge> bridge;
 };
@@ -105,6 +107,8 @@ class CityLayout {
   std::vector<std::array<Eigen::Vector2d, 2>> StreetsAcross(const Eigen::Vector2d& min, const Eigen::Vector2d& max) const;
   // `count` cars at random positions on lanes of the streets that cross the rectangle, each from one of its edges to another.
   std::vector<MovingCar> MakeMovingCars(int count, const Eigen::Vector2d& min, const Eigen::Vector2d& max, base::Random& random) const;
+  // `count` people at random places on the pavements of these streets.
+  std::vector<Walker> MakeWalkers(int count, const Eigen::Vector2d& min, const Eigen::Vector2d& max, base::Random& random) const;
 
  private:
   // A street's centre line inside a rectangle.
@@ -130,6 +134,8 @@ class CityLayout {
   void AddBridge(base::Random& random);
   // At kerbs, up to plan.trucks, where there is room. Parked cars in their way are removed.
   void AddTrucks(const CityPlan& plan, base::Random& random);
+  // At kerbs of the streets of the built-up rectangle, up to plan.lamps, where there is room.
+  void AddLamps(const CityPlan& plan, base::Random& random);
   std::vector<Lane> LanesAcross(int axis, const Eigen::Vector2d& min, const Eigen::Vector2d& max) const;
   void AddFieldTrees(const CityPlan& plan, const Eigen::Vector2d& ground_min, const Eigen::Vector2d& ground_max, base::Random& random);
 

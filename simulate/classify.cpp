@@ -44,8 +44,17 @@ SurfaceClass ClassOf(const Tag& tag, const Eigen::Vector3f& position, const City
     case Part::kBridgeRoad:
     case Part::kBridgeConcrete:
       return SurfaceClass::kRoad;
+    case Part::kPerson:
+      return SurfaceClass::kPerson;
+    case Part::kLampPost:
+    case Part::kLampHead:
+      return SurfaceClass::kLamp;
   }
   return SurfaceClass::kNone;
+}
+
+SurfaceClass ClassOfMoving(const Tag& tag) {
+  return tag.part == Part::kPerson ? SurfaceClass::kPerson : SurfaceClass::kMovingCar;
 }
 
 }  // namespace skyquilt::simulate

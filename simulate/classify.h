@@ -13,4 +13,7 @@ namespace skyquilt::simulate {
 // where there is none.
 survey::SurfaceClass ClassOf(const Tag& tag, const Eigen::Vector3f& position, const CityLayout* city);
 
+// tag: of a triangle of what moves.
+survey::SurfaceClass ClassOfMoving(const Tag& tag);
+
 }  // namespace skyquilt::simulate

@@ -1,4 +1,4 @@
-// Renders the photos of a simulated survey by ray tracing: linear colour, a mask of moving cars, and the true surface.
+// Renders the photos of a simulated survey by ray tracing: linear colour, a mask of what moves, and the true surface.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,10 +16,10 @@ namespace skyquilt::simulate {
 
 struct Rendering {
   image::ImageF rgb_linear;  // radiance before the photo's exposure
-  image::Image8 usable;      // mask: 0 on a moving car or its shadow, 255 elsewhere; empty when the photo shows none
+  image::Image8 usable;      // mask: 0 on a moving car, a person or their shadows, 255 elsewhere; empty when the photo shows none
 };
 
-// The surface that a camera sees at its pixel centres, moving cars included.
+// The surface that a camera sees at its pixel centres, moving cars and people included.
 struct SurfaceImages {
   image::ImageF z_depth;  // metres along the camera's z axis; NaN for sky
   image::ImageF normals;  // three channels: unit normal of the triangle in ENU, on the camera's side; NaN for sky

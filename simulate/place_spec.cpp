@@ -360,6 +360,13 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
     }
     place.moving_cars = options.moving_cars;
   }
+  for (const auto& [name, count] : {std::pair{"people", options.people}, std::pair{"lamps", options.lamps}}) {
+    if (place.landscape != Landscape::kCity && count > 0) {
+      Refuse(name, std::to_string(count), "place '" + place.name + "' has no streets; set it to 0");
+    }
+  }
+  place.people = options.people;
+  place.city.lamps = options.lamps;
   Overlay(options.sun_azimuth_deg, place.sun_azimuth_deg);
   Overlay(options.sun_elevation_deg, place.sun_elevation_deg);
   CheckControlCrs(options);

@@ -37,7 +37,8 @@ struct CityPlan {
   double building_share = 1.0;  // of the cells that would have buildings
   double tree_density = 1.0;    // factor on the number of trees, `trees` included
   bool bridge = false;          // over the crossing nearest to the middle
-  int trucks = 0;               // with containers, parked in streets in this rectangle, ENU metres
+  int lamps = 0;                // at kerbs
+  int trucks = 0;               // with containers, parked in streets in this rectangle, ENU metres; lamps stand there, too
   Eigen::Vector2d trucks_min = Eigen::Vector2d::Zero(), trucks_max = Eigen::Vector2d::Zero();
 };
 
@@ -75,6 +76,7 @@ struct PlaceSpec {
   double vignetting = 0.0;
   ExposureTags exposure_tags = ExposureTags::kAll;
   int moving_cars = 3;
+  int people = 0;
   double sun_azimuth_deg = 140.0;
   double sun_elevation_deg = 48.0;
   double ambient_voxel_m = 3.0;

@@ -85,7 +85,7 @@ RayLight RayShader::Trace(const MovingScene& moving, const PixelWidth& pixel, ra
       light.radiance[lane] = world_.sky().Seen({rays.dx[lane], rays.dy[lane], rays.dz[lane]});
     } else {
       const Hit& hit = hits[lane];
-      const Surface surface = ((on_moving >> lane) & 1U) != 0 ? World::MovingSurfaceAt(hit, moving.cars) : world_.SurfaceAt(hit);
+      const Surface surface = ((on_moving >> lane) & 1U) != 0 ? World::MovingSurfaceAt(hit, moving) : world_.SurfaceAt(hit);
       light.radiance[lane] = Shade(hit, surface, ((dark >> lane) & 1U) != 0 ? 0.0F : 1.0F);
     }
   }

@@ -27,7 +27,7 @@ struct PixelWidth {
 
 struct RayLight {
   std::array<Eigen::Vector3f, raytrace::kPacket> radiance;  // linear; undefined for lanes that are not valid
-  uint32_t moved = 0;                                       // lanes that meet a moving car or its shadow, as a bit mask
+  uint32_t moved = 0;                                       // lanes that meet a moving car, a person or their shadows, as a bit mask
 };
 
 class RayShader {

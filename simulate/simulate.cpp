@@ -60,11 +60,15 @@ void PrepareFolder(const fs::path& folder) {
     fs::create_directories(folder / name);
 }
 
-void WarnAboutTrucks(const World& world, const PlaceSpec& place) {
+void WarnAboutStreets(const World& world, const PlaceSpec& place) {
   if (world.city() == nullptr) return;
   const std::vector<Car>& parked = world.city()->contents().parked;
   const auto n = std::count_if(parked.begin(), parked.end(), [](const Car& car) { return car.kind != CarKind::kCar; });
   if (n < place.city.trucks) base::LogWarning("simulate: the streets have room for {} of {} trucks (simulate.trucks)", n, place.city.trucks);
+  const size_t lamps = world.city()->contents().lamps.size();
+  if (lamps < static_cast<size_t>(place.city.lamps)) {
+    base::LogWarning("simulate: the streets have room for {} of {} lamps (simulate.lamps)", lamps, place.city.lamps);
+  }
 }
 
 struct Targets {
@@ -150,7 +154,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
   base::LogInfo("simulate: building place {}", place.name);
   World world(place, options.light_intensity, threads);
-  WarnAboutTrucks(world, place);
+  WarnAboutStreets(world, place);
   std::vector<PhotoPlan> photos = plan(place, world);
   ApplyTagFaults(place.tag_faults, place.seed, photos);
   std::optional<gis::MapGrid> ortho;
@@ -179,6 +183,8 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
     if (photo.true_depth) {
       WriteSurfaceTruth(folder, photo, renderer.Surfaces(photo.cam_from_enu, moving, threads));
       ++summary.n_test;
+    } else if (options.class_images == "all") {
+      WriteClasses(folder, photo, renderer.Surfaces(photo.cam_from_enu, moving, threads));
     }
     progress.Update(static_cast<double>(i + 1));
     if (!photo.finds_points) continue;

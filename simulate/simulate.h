@@ -4,11 +4,12 @@
 //   sparse/0/{cameras,images,points3D}.bin   COLMAP model of the true poses in the ENU frame of the origin, metres; without exact_frame in another
 //   truth/depth/<stem>.tiff            depth of the test photos (every test_every-th in name order): metres along the camera's z, NaN = sky
 //   truth/normals/<stem>.png           normals of their surfaces (core/image/normal_image.h): of the triangles, ENU, on the camera's side
-//   truth/classes/<stem>.png           what their surfaces are: 8 bits, one channel, the numbers of core/survey/surface_class.h
+//   truth/classes/<stem>.png           what their surfaces are: 8 bits, one channel, the numbers of core/survey/surface_class.h;
+//                                      of all photos with simulate.class_images = all
 //   truth/surface.ply                  the static surface as a mesh, ENU metres, with the class of each face (simulate/surface_mesh.h)
 //   truth/orthophoto.tif               the true orthophoto, RGBA in UTM, with simulate.ortho_cell_m (true_orthophoto.h)
 //   truth/edge_targets.json            where slanted edges are, with simulate.edge_targets (edge_targets.h)
-//   truth/masks/<name>.jpg.png         0 on a moving car or its shadow; only for photos that show one
+//   truth/masks/<name>.jpg.png         0 on a moving car, a person or their shadows; only for photos that show one
 //   truth/exposure.json                brightness of every photo
 //   truth/buildings.json               position and size of every part of a building, and the outlines that parts have together
 //   video/flight.mp4, flight.SRT       with simulate.video_fps: the same flight filmed (flights/video_flight.h), and truth/video_poses.csv

@@ -49,6 +49,11 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
       {"height_m", &O::height_m, Range{-500, 9000}, "ellipsoidal height of the origin, metres"},
       {"test_every", &O::test_every, Range{1, 1000000}, "every n-th photo in name order gets a true depth image"},
       {"moving_cars", &O::moving_cars, Range{0, 1000}.OrNegative(), "number of cars that move between photos; negative: the place's value"},
+      {"people", &O::people, Range{0, 1000}, "number of people who walk on the pavements, at another place in every photo"},
+      {"lamps", &O::lamps, Range{0, 1000}, "number of street lamps, as far as there is room"},
+      {"class_images", &O::class_images, Range::OneOf({"test", "all"}),
+       "photos of which truth/classes/ says what each pixel shows; test: those with a true depth image; all: to train a network that finds what "
+       "moves"},
       {"sun_azimuth_deg", &O::sun_azimuth_deg, Range{0, 360}.OrNegative(),
        "direction of the sun in degrees clockwise from north; negative: the place's value"},
       {"sun_elevation_deg", &O::sun_elevation_deg, Range{5, 90}.OrNegative(),

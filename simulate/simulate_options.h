@@ -33,6 +33,9 @@ struct SimulateOptions {
   double height_m = 408.0;                // ellipsoidal height of the ENU origin, about the mean ground
   int test_every = 8;                     // photos 0, n, 2n... in name order get a true depth image
   int moving_cars = -1;                   // cars that move between photos
+  int people = 0;                         // 0..1000, who walk on pavements
+  int lamps = 0;                          // 0..1000, street lamps
+  std::string class_images = "test";      // photos with an image of their surfaces' classes: test: those with true depth; all
   double sun_azimuth_deg = -1.0;          // clockwise from north, 0..360
   double sun_elevation_deg = -1.0;        // 5..90
   double light_intensity = 1.0;           // > 0, scales sun and sky

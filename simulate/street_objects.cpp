@@ -1,4 +1,4 @@
-// What stands in the streets of a city when it is asked for: a bridge, trucks and containers.
+// What stands and walks in the streets of a city when it is asked for: a bridge, trucks and containers, lamps, people.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -15,6 +15,7 @@ constexpr double kBetweenPlaces_m = 3.0;   // where a truck could stand
 constexpr double kBetweenTrucks_m = 10.0;  // of their centres
 constexpr double kOntoPavement_m = 0.35;   // wheels on the pavement leave room for moving cars
 constexpr double kHalfCar_m = 2.6;
+constexpr double kBehindKerb_m = 0.4, kBetweenLamps_m = 12.0, kFromTrunk_m = 1.0, kFromTruck_m = 0.6;  // of lamps
 
 double DistanceToTruck(const Car& truck, const Vector2d& at) {
   const Vector2d local = PlaneTurn(truck.position, truck.yaw_deg).TurnedBack(at) - truck.position;
@@ -74,6 +75,60 @@ void CityLayout::AddTrucks(const CityPlan& plan, base::Random& random) {
   }
   for (const Car& truck : trucks) std::erase_if(contents_.parked, [&](const Car& car) { return DistanceToTruck(truck, car.position) < kHalfCar_m; });
   contents_.parked.insert(contents_.parked.end(), trucks.begin(), trucks.end());
+}
+
+void CityLayout::AddLamps(const CityPlan& plan, base::Random& random) {
+  std::vector<Lamp> places;
+  const double pitch = static_cast<double>(pitch_), across = static_cast<double>(kRoadHalfWidth) + kBehindKerb_m;
+  for (const int axis : {0, 1}) {
+    const bool along_x = axis == 1;
+    for (const Lane& lane : LanesAcross(axis, plan.trucks_min, plan.trucks_max)) {
+      for (double at = lane.from; at < lane.to; at += kBetweenLamps_m) {
+        if (std::abs(std::remainder(at - static_cast<double>(phase_[1 - axis]), pitch)) < across) continue;  // in the side street
+        for (const double side : {-1.0, 1.0}) {
+          const double line = lane.line + side * across;
+          Lamp lamp;
+          lamp.position = turn_.Turned(along_x ? Vector2d(at, line) : Vector2d(line, at));
+          // Its arm reaches above the road.
+          lamp.yaw_deg = turn_.TurnedYaw(along_x ? -90.0 * side : (side > 0.0 ? 180.0 : 0.0));
+          places.push_back(lamp);
+        }
+      }
+    }
+  }
+  for (size_t n = places.size(); n > 1; --n) std::swap(places[n - 1], places[random.Below(static_cast<uint32_t>(n))]);
+  for (Lamp& lamp : places) {
+    if (contents_.lamps.size() == static_cast<size_t>(plan.lamps)) break;
+    lamp.height_m = random.Uniform(6.0, 8.0);
+    const bool free = std::all_of(contents_.trees.begin(), contents_.trees.end(),
+                                  [&](const Tree& tree) { return (tree.position - lamp.position).norm() > kFromTrunk_m; }) &&
+                      std::all_of(contents_.parked.begin(), contents_.parked.end(),
+                                  [&](const Car& car) { return car.kind == CarKind::kCar || DistanceToTruck(car, lamp.position) > kFromTruck_m; }) &&
+                      (!contents_.bridge || contents_.bridge->DistanceTo(lamp.position) > kFromTruck_m);
+    if (free) contents_.lamps.push_back(lamp);
+  }
+}
+
+std::vector<Walker> CityLayout::MakeWalkers(int count, const Vector2d& min, const Vector2d& max, base::Random& random) const {
+  std::vector<Walker> walkers;
+  for (int k = 0; k < count; ++k) {
+    const bool along_x = k % 2 == 0;
+    const std::vector<Lane> lanes = LanesAcross(along_x ? 1 : 0, min, max);
+    const Lane& lane = lanes[random.Below(static_cast<uint32_t>(lanes.size()))];
+    const bool forward = random.UniformDouble() < 0.5;
+    const double side = random.UniformDouble() < 0.5 ? -1.0 : 1.0;
+    const double line = lane.line + side * (static_cast<double>(kRoadHalfWidth) + random.Uniform(0.4, static_cast<double>(kPavementWidth) - 0.3));
+    const double sign = forward ? 1.0 : -1.0, from = forward ? lane.from : lane.to;
+    Walker walker;
+    walker.direction = turn_.TurnedDirection(along_x ? Vector2d(sign, 0.0) : Vector2d(0.0, sign));
+    walker.start = turn_.Turned(along_x ? Vector2d(from, line) : Vector2d(line, from));
+    walker.way_m = lane.to - lane.from;
+    walker.offset_m = random.UniformDouble() * walker.way_m;
+    walker.speed_mps = random.Uniform(1.0, 1.8);
+    walker.seed = random.NextU32();
+    walkers.push_back(walker);
+  }
+  return walkers;
 }
 
 }  // namespace skyquilt::simulate

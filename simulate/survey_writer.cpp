@@ -135,7 +135,11 @@ void WriteSurfaceTruth(const std::filesystem::path& folder, const PhotoPlan& pho
   const std::filesystem::path truth = folder / "truth";
   image::SaveFloatTiff(surfaces.z_depth, truth / "depth" / (stem + ".tiff"));
   image::SaveNormals(surfaces.normals, truth / "normals" / (stem + ".png"));
-  image::SavePng(surfaces.classes, truth / "classes" / (stem + ".png"));
+  WriteClasses(folder, photo, surfaces);
+}
+
+void WriteClasses(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces) {
+  image::SavePng(surfaces.classes, folder / "truth" / "classes" / (std::filesystem::path(photo.name).stem().string() + ".png"));
 }
 
 void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const PlaceSpec& place) {

@@ -41,6 +41,8 @@ survey::ColmapModel MakeModel(const camera::Camera& camera, const std::vector<Ph
 void WriteModel(const std::filesystem::path& folder, const survey::ColmapModel& model);
 // truth/depth/<stem>.tiff, truth/normals/<stem>.png and truth/classes/<stem>.png of a photo.
 void WriteSurfaceTruth(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces);
+// truth/classes/<stem>.png alone.
+void WriteClasses(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces);
 // truth/exposure.json
 void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const PlaceSpec& place);
 // simulate.json: options, origin and suggested blocks. Written last, so it exists only when the survey is complete. model_from_enu: nothing if the

@@ -28,13 +28,16 @@ enum class Part : uint8_t {
   kSolarPanel,  // the side to the sun
   kSolarFrame,  // of tables: below, edges and posts
   kRoomFloor,
-  kRoomWall,      // ceiling and outside too
-  kRoomFurniture  // doors, pictures and the window's frame too
+  kRoomWall,       // ceiling and outside too
+  kRoomFurniture,  // doors, pictures and the window's frame too
+  kPerson,
+  kLampPost,  // and its arm
+  kLampHead
 };
 
 struct Tag {
   Part part = Part::kGround;
-  uint32_t object = 0;  // index of the building, tree or car
+  uint32_t object = 0;  // index of the building, tree, car, person or lamp
 };
 
 struct Mesh {

@@ -161,7 +161,7 @@ void WriteTrueOrthophoto(const World& world, const gis::MapGrid& grid, const geo
   gis::GeoTiffWriter writer(file, spec);
   const gis::MapProjection projection(frame.origin(), grid);
   const RowRenderer renderer(world, grid, samples_per_cell, soft_shadows);
-  const MovingScene nothing_moves{{}, {}, raytrace::TracedScene({}, {})};
+  const MovingScene nothing_moves{{}, {}, {}, raytrace::TracedScene({}, {})};
   base::Progress progress("true orthophoto", grid.height, "rows");
   std::vector<uint8_t> rgba;
   for (int first_row = 0; first_row < grid.height; first_row += kBandRows) {

@@ -103,6 +103,10 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
     contents.parked[i].ground_rise = RiseUnderCar(contents.parked[i].position);
     AddCar(contents.parked[i], static_cast<uint32_t>(i), mesh_);
   }
+  for (size_t i = 0; i < contents.lamps.size(); ++i) {
+    contents.lamps[i].ground_z_m = Ground(contents.lamps[i].position);
+    AddLamp(contents.lamps[i], static_cast<uint32_t>(i), mesh_);
+  }
   if (contents.bridge) {
     contents.bridge->StandOn(Ground);
     AddBridge(*contents.bridge, mesh_);
@@ -110,6 +114,8 @@ void World::BuildCity(const PlaceSpec& place, const Eigen::Vector2d& ground_min,
   base::Random random(seed_, 3);
   const Eigen::Vector2d beyond = Eigen::Vector2d::Constant(40.0);
   moving_ = city_->MakeMovingCars(place.moving_cars, place.area_min - beyond, place.area_max + beyond, random);
+  base::Random walker_random(seed_, 10);
+  walkers_ = city_->MakeWalkers(place.people, place.area_min - beyond, place.area_max + beyond, walker_random);
 }
 
 void World::PutOnRoad(const Eigen::Vector2d& direction, Car& car) const {
@@ -197,8 +203,15 @@ MovingScene World::MovingAt(double time_s) const {
     AddCar(car, static_cast<uint32_t>(i), mesh);
     cars.push_back(car);
   }
+  std::vector<Person> people;
+  for (size_t i = 0; i < walkers_.size(); ++i) {
+    Person person = walkers_[i].At(time_s);
+    person.ground_z_m = static_cast<double>(terrain_->Height(static_cast<float>(person.position.x()), static_cast<float>(person.position.y())));
+    AddPerson(person, static_cast<uint32_t>(i), mesh);
+    people.push_back(person);
+  }
   raytrace::TracedScene scene(mesh.position, mesh.triangle);
-  return {std::move(cars), std::move(mesh), std::move(scene)};
+  return {std::move(cars), std::move(people), std::move(mesh), std::move(scene)};
 }
 
 Surface World::GroundAt(const Hit& hit) const {
@@ -222,6 +235,9 @@ Surface World::SurfaceAt(const Hit& hit) const {
     case Part::kCarGlass:
     case Part::kCarTyre:
       return CarSurface(city_->contents().parked[hit.tag.object], hit);
+    case Part::kLampPost:
+    case Part::kLampHead:
+      return LampSurface(hit);
     case Part::kBridgeRoad:
     case Part::kBridgeConcrete:
       return BridgeSurface(*city_->contents().bridge, hit, seed_);
@@ -237,8 +253,9 @@ Surface World::SurfaceAt(const Hit& hit) const {
   }
 }
 
-Surface World::MovingSurfaceAt(const Hit& hit, const std::vector<Car>& cars) {
-  return CarSurface(cars[hit.tag.object], hit);
+Surface World::MovingSurfaceAt(const Hit& hit, const MovingScene& moving) {
+  if (hit.tag.part == Part::kPerson) return PersonSurface(moving.people[hit.tag.object], hit);
+  return CarSurface(moving.cars[hit.tag.object], hit);
 }
 
 }  // namespace skyquilt::simulate

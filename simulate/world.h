@@ -20,9 +20,10 @@
 
 namespace skyquilt::simulate {
 
-// The moving cars at one moment.
+// The moving cars and people at one moment.
 struct MovingScene {
   std::vector<Car> cars;
+  std::vector<Person> people;
   Mesh mesh;
   raytrace::TracedScene scene;
 };
@@ -47,9 +48,9 @@ class World {
   void PaintTargets(std::vector<PaintedTarget> targets) { paint_ = TargetPaint(std::move(targets)); }
 
   MovingScene MovingAt(double time_s) const;
-  // Surface of the static scene at a hit; of a moving car, given the cars of its MovingScene.
+  // Surface of the static scene at a hit; of what moves, given its MovingScene.
   Surface SurfaceAt(const Hit& hit) const;
-  static Surface MovingSurfaceAt(const Hit& hit, const std::vector<Car>& cars);
+  static Surface MovingSurfaceAt(const Hit& hit, const MovingScene& moving);
 
  private:
   Surface GroundAt(const Hit& hit) const;
@@ -72,6 +73,7 @@ class World {
   std::unique_ptr<TidalChannels> channels_;  // of a tidal flat
   std::unique_ptr<Terrain> terrain_;
   std::vector<MovingCar> moving_;
+  std::vector<Walker> walkers_;
   std::vector<Eigen::Vector2f> building_axis_;
   Mesh mesh_;
   std::unique_ptr<raytrace::TracedScene> scene_;

@@ -90,6 +90,7 @@ void AddCommands(CLI::App& app, CommandState& state) {
   AddPlan(app, state);
   AddSimulate(app, state);
   AddPrepare(app, state);
+  AddMasks(app, state);
   AddPartition(app, state);
   AddTrain(app, state);
   AddMerge(app, state);

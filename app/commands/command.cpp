@@ -171,6 +171,22 @@ void AddBoundaryFlag(CLI::App& command, const Overrides& overrides) {
       ->type_name("FILE");
 }
 
+void AddMaskFlags(CLI::App& command, const Overrides& overrides) {
+  const auto add = [&](const std::string& flag, const std::string& key, const std::string& help) {
+    command
+        .add_option_function<std::string>(
+            flag,
+            [overrides, key](const std::string& file) {
+              overrides->push_back({key, file.empty() ? file : std::filesystem::absolute(file).lexically_normal().string()});
+            },
+            help + " [" + key + "]")
+        ->type_name("FILE");
+  };
+  add("--segment", "masks.segment", "ONNX network that finds what moves in each photo, which is then ignored");
+  add("--segment-config", "masks.segment_config", "TOML or JSON file that says what the network takes and gives, and which classes are ignored");
+  add("--ignore-ground", "masks.ignore_ground", "GeoJSON or GeoPackage file with polygons around ground to ignore");
+}
+
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides) {
   command.add_option_function<std::string>(
       "--memory",

@@ -70,6 +70,8 @@ void AddVideoFlags(CLI::App& command, const Overrides& overrides);
 void AddStatedFlags(CLI::App& command, const Overrides& overrides);
 // --boundary: a file; stored as an absolute path, as later commands may run elsewhere.
 void AddBoundaryFlag(CLI::App& command, const Overrides& overrides);
+// --segment, --segment-config, --ignore-ground: files, stored as absolute paths.
+void AddMaskFlags(CLI::App& command, const Overrides& overrides);
 // --memory.
 void AddMemoryFlag(CLI::App& command, const Overrides& overrides);
 // --within.
@@ -83,6 +85,7 @@ std::vector<std::filesystem::path> ProjectConfig(const coordinator::Project& pro
 
 void AddSimulate(CLI::App& app, CommandState& state);
 void AddPrepare(CLI::App& app, CommandState& state);
+void AddMasks(CLI::App& app, CommandState& state);
 void AddPartition(CLI::App& app, CommandState& state);
 void AddTrain(CLI::App& app, CommandState& state);
 void AddMerge(CLI::App& app, CommandState& state);

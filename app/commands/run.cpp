@@ -64,6 +64,7 @@ void AddRun(CLI::App& app, CommandState& state) {
                 "scale photos down to this width in pixels for training and scoring; 0: full size");
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
+  AddMaskFlags(*command, overrides);
   AddBoundaryFlag(*command, overrides);
   AddWithinFlag(*command, overrides);
   AddTrainingFlags(*command, overrides);

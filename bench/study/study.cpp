@@ -15,6 +15,7 @@
 #include "core/base/system.h"
 #include "core/scene/field_file.h"
 #include "core/scene/scene_file.h"
+#include "core/survey/made_masks.h"
 #include "evaluate/metrics/training_curve.h"
 
 namespace skyquilt::bench {
@@ -129,6 +130,7 @@ Study::Study(comm::Communicator& comm, Options options) : comm_(comm), options_(
       coordinator::SimulateStage(pipeline, photos);
     }
     coordinator::PrepareStage(pipeline, photos, wanted.model);
+    if (pipeline.settings.masks.Any()) coordinator::MasksStage(pipeline);
   }
   survey_ = survey::LoadSurvey(source_ / "survey");
 }
@@ -140,6 +142,8 @@ std::string Study::Identity(const Variant& variant, const coordinator::Settings&
   std::erase_if(flat, [](const auto& entry) { return entry.first.starts_with("simulate.") || entry.first.starts_with("prepare."); });
   std::string identity =
       config::Hash(flat) + " " + coordinator::FileIdentity(source_ / "survey" / "survey.json") + " " + std::to_string(variant.every_nth_photo);
+  const std::filesystem::path masks = survey::MadeMasksFile(source_ / "survey");
+  if (std::filesystem::exists(masks)) identity.append(" ").append(coordinator::FileIdentity(masks));
   for (const std::string& prefix : variant.photo_prefixes) identity.append(" ").append(prefix);
   if (scales_) identity.append(" ").append(scales_->Identity());
   if (views_ > 0) identity.append(" views ").append(std::to_string(views_));
@@ -253,6 +257,7 @@ coordinator::Pipeline Study::BeginRun(const Variant& variant, const coordinator:
     survey::SaveSurvey(variant.AllPhotos() ? edited : ThinSurvey(edited, variant), project.SurveyFolder());
   }
   coordinator::Pipeline pipeline{.comm = comm_, .project = project, .settings = settings, .quiet = options_.quiet, .verbose = options_.verbose};
+  pipeline.settings.masks = {};  // the survey was loaded with them
   if (!merge_anew) coordinator::RequireSameConfiguration(pipeline, "partition");
   coordinator::PartitionStage(pipeline);
   if (variant.AllPhotos()) LinkPixels(project.folder, settings.run.image_width, false);

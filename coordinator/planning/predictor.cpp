@@ -28,6 +28,8 @@ constexpr double kReportPhotos = 3.0;       // pictures of a photo written per s
 constexpr double kBuildingCells = 0.2e6;    // cells of the surface per second and thread
 constexpr double kMeshScores = 1.0;         // comparing the mesh with a photo, too: as long as comparing the field
 constexpr double kTruthScores_s = 6.0;
+// Seconds and threads per photo of stage "masks". The first is that of a small network (docs/input.md); networks differ by far more than machines.
+constexpr double kNetworkMask_s = 1.0, kGroundMask_s = 0.4;
 constexpr double kMostCorrection = 6.0;
 constexpr double kOwnShare = 0.7, kOtherShare = 0.3;  // of the logarithm of a stage's ratio
 constexpr double kLeastTold_s = 1.0;
@@ -119,6 +121,13 @@ double Predictor::SurfaceSeconds(const Settings& settings) const {
   return kStageStart_s + RaySeconds(views) + texels / (std::max(1.0, rates_.texels) * size_.Speedup()) + (size_.level ? kLevelMesh : 1.0) * fusion;
 }
 
+double Predictor::MasksSeconds(const Settings& settings) const {
+  const masks::MaskOptions& options = settings.masks;
+  if (!options.Any()) return 0.0;
+  const double per_photo = options.segment.empty() ? kGroundMask_s : kNetworkMask_s;
+  return 0.3 * kStageStart_s + size_.photos * per_photo / (size_.threads * size_.Speedup());
+}
+
 double Predictor::TourSeconds(const Settings& settings) const {
   const tour::TourOptions& options = settings.tour;
   const double pixels = static_cast<double>(options.still_width) * options.still_height + 0.5 * Squared(options.panorama_width);
@@ -144,6 +153,7 @@ double Predictor::Seconds(const std::string& stage, const Settings& settings) co
   if (stage == "surface") return factor * SurfaceSeconds(settings);
   if (stage == "tour") return factor * TourSeconds(settings);
   if (stage == "evaluate") return factor * EvaluateSeconds(settings);
+  if (stage == "masks") return MasksSeconds(settings);
   if (stage == "partition") return 0.3 * kStageStart_s + size_.photos / 500.0;
   if (stage == "merge") return 0.3 * kStageStart_s + 0.2 * size_.blocks;
   if (stage == "buildings") {

@@ -38,6 +38,7 @@ class Predictor {
   double ProductsSeconds(const Settings& settings) const;
   double SurfaceSeconds(const Settings& settings) const;
   double EvaluateSeconds(const Settings& settings) const;
+  double MasksSeconds(const Settings& settings) const;
   double TourSeconds(const Settings& settings) const;
   double RaySeconds(double rays) const;
 

@@ -9,6 +9,7 @@ config::Sections Settings::AllSections() {
   sections.Add("run", run, "options of all stages from photos to report");
   sections.Add("simulate", simulate, "surveys with ground truth, made by 'skyquilt simulate'");
   sections.Add("prepare", prepare, "from photos to a geo-referenced survey");
+  sections.Add("masks", masks, "masks that are made of the survey: of what moves, and of ground to ignore");
   sections.Add("partition", partition, "division of the survey into blocks");
   sections.Add("brightness", brightness, "correction of exposure differences between photos");
   sections.Add(

@@ -12,6 +12,7 @@
 #include "core/config/options.h"
 #include "core/config/override.h"
 #include "evaluate/evaluate.h"
+#include "masks/mask_options.h"
 #include "merge/merge_options.h"
 #include "partition/partition_options.h"
 #include "prepare/prepare_options.h"
@@ -28,6 +29,7 @@ struct Settings {
   RunOptions run;
   simulate::SimulateOptions simulate;
   prepare::PrepareOptions prepare;
+  masks::MaskOptions masks;
   partition::PartitionOptions partition;
   brightness::BrightnessOptions brightness;
   worker::TrainOptions context;

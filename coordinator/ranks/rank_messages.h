@@ -20,8 +20,8 @@ enum Tag : int {
   kTagAssignment = 112,    // 0 -> worker: its threads and memory, and the owner of each block
   kTagRays = 113,          // 0 -> worker: rays to render (RayRequest)
   kTagRayReply = 114,      // worker -> 0: rendered rays, or the failure (RayReply)
-  kTagPoses = 115,         // 0 -> worker: start a search for poses (see poses/rank_tasks.h)
-  kTagTask = 116,          // 0 -> worker: number of a task, newline, the task (prepare::poses::PoseTask)
+  kTagTasks = 115,         // 0 -> worker: share work that is divided into tasks (see tasks/rank_tasks.h)
+  kTagTask = 116,          // 0 -> worker: number of a task, newline, the task (prepare::poses::PoseTask, masks::MaskTask)
   kTagTaskPart = 117,      // worker -> 0: number of a task, newline, how much more of it is done
   kTagTaskEnd = 118,       // worker -> 0: number of a task, newline, nothing or its failure
   kTagPaint = 119,         // 0 -> worker, while it renders: open this job of an orthophoto (see rendering/rank_painter.h)

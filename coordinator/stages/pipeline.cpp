@@ -7,6 +7,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
+#include "masks/make_masks.h"
 #include "prepare/video/find_videos.h"
 #include "prepare/video/video_frames.h"
 
@@ -46,6 +47,10 @@ void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const
   pipeline.model = model.empty() ? model : std::filesystem::absolute(model).lexically_normal();
   RunStage(pipeline, "prepare");
   ProvideFirstPicture(pipeline);
+}
+
+void MasksStage(Pipeline& pipeline) {
+  RunStage(pipeline, "masks");
 }
 
 void PartitionStage(Pipeline& pipeline) {
@@ -96,6 +101,7 @@ void RequireInputs(const Settings& settings, const std::filesystem::path& photos
   if (const std::string& masks = settings.prepare.masks; !masks.empty() && masks != "none" && !std::filesystem::exists(masks)) {
     throw base::InputError(masks, "no such folder", "Give the folder of the masks, or one mask for all photos, as prepare.masks, or leave it empty");
   }
+  masks::CheckFiles(settings.masks);
   for (const std::string* file : {&settings.prepare.gcp, &settings.prepare.gcp_marks}) {
     if (!file->empty() && !std::filesystem::is_regular_file(*file)) {
       throw base::InputError(*file, "no such file", "Give the file of the control points or of their marks, or leave the option empty");
@@ -114,7 +120,9 @@ void RunStages(Pipeline& pipeline, const std::filesystem::path& photos, const st
     }
     if (pipeline.timed) pipeline.timed->Decide(pipeline, stage.name);
     if (stage.name == "buildings" && !kinds.buildings) continue;
-    if (stage.wanted != nullptr && !stage.wanted(pipeline.settings)) continue;
+    // Masks that are no longer asked for must not stay in use.
+    const bool made = stage.name == "masks" && LoadStamp(pipeline.project, stage.name);
+    if (stage.wanted != nullptr && !stage.wanted(pipeline.settings) && !made) continue;
     if (pipeline.timed) pipeline.timed->Began(stage.name);
     if (stage.name == "prepare") {
       PrepareStage(pipeline, folder, model);

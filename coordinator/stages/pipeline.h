@@ -59,6 +59,8 @@ void TakePhotos(Pipeline& pipeline, const std::filesystem::path& photos);
 // Also chooses between settings and level_settings when it makes a survey, and writes level_settings to config.toml, for later commands. Makes the
 // first picture (first_picture.h) as soon as it can, unless there is one.
 void PrepareStage(Pipeline& pipeline, const std::filesystem::path& photos, const std::filesystem::path& model);
+// Makes masks of the survey, as chosen in [masks]; all later stages use them.
+void MasksStage(Pipeline& pipeline);
 void PartitionStage(Pipeline& pipeline);
 // Blocks that failed after all their tries have ok = false in the report; the others are finished and saved.
 const scene::TrainReport& TrainStage(Pipeline& pipeline);

@@ -25,6 +25,16 @@ void RequireSameInputs(const Project& project, const Stage& stage, const FlatOpt
                          "\nUse another project folder, or --restart to remove the results of '" + stage.name + "' and of all later stages");
 }
 
+// Throws base::UsageError when the stage's new results would not be those that a later stage used.
+void RequireBefore(const Project& project, const Stage& stage, const FlatOptions& inputs) {
+  if (stage.refused_after.empty() || !LoadStamp(project, stage.refused_after)) return;
+  const std::optional<StageStamp> before = LoadStamp(project, stage.name);
+  const std::string changes = base::Join(config::Differences(before ? before->inputs : FlatOptions(), inputs), "\n  ");
+  throw base::UsageError("'" + stage.refused_after + "' in " + project.folder.string() + " has begun without these results of '" + stage.name +
+                         "':\n  " + changes + "\nUse another project folder, or 'skyquilt " + stage.name + " " + project.folder.string() +
+                         " --restart' with the same options, which removes all results from '" + stage.name + "' on and keeps those before");
+}
+
 }  // namespace
 
 FlatOptions StageOptions(const Stage& stage, Settings& settings) {
@@ -77,6 +87,7 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
     }
     base::LogInfo("{}: running again, because its results cannot be read", name);
   }
+  if (freshness == Freshness::kInputsChanged || freshness == Freshness::kNotStarted) RequireBefore(project, stage, stamp.inputs);
   if (freshness == Freshness::kInputsChanged) {
     RequireSameInputs(project, stage, stamp.inputs);
     base::LogInfo("{}: running again, because its inputs have changed", name);

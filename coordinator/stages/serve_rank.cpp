@@ -1,9 +1,9 @@
 #include "coordinator/stages/serve_rank.h"
 
-#include "coordinator/poses/rank_tasks.h"
 #include "coordinator/ranks/rank_messages.h"
 #include "coordinator/rendering/serve_rays.h"
 #include "coordinator/scheduler/train_all.h"
+#include "coordinator/tasks/rank_tasks.h"
 
 namespace skyquilt::coordinator {
 
@@ -13,7 +13,7 @@ void ServeRank(comm::Communicator& comm) {
     if (message.tag == kTagQuit) return;
     if (message.tag == kTagSetup) ServeTraining(comm, message.bytes);
     if (message.tag == kTagScene) ServeRays(comm, message.bytes);
-    if (message.tag == kTagPoses) ServeTasks(comm, message.bytes);
+    if (message.tag == kTagTasks) ServeTasks(comm, message.bytes);
   }
 }
 

@@ -45,6 +45,9 @@ struct Stage {
   // Whether `run` makes it; null: always.
   bool (*wanted)(const Settings& settings) = nullptr;
   OnNewInputs on_new_inputs = OnNewInputs::kRunAgain;
+  // A later stage of which results must not be there when this one runs for the first time or with new inputs; they would no longer be what this
+  // stage's results give. Empty: none.
+  std::string refused_after = {};
   // A separate folder for this stage and its stamp; null: the project folder.
   Project (*separate_folder)(const Project& project) = nullptr;
   bool dated = true;  // false: no date and no copy of the configuration are written, so that results are the same bytes each time

@@ -1,13 +1,14 @@
 #include "coordinator/stages/stage_bodies.h"
 
-#include "coordinator/poses/rank_tasks.h"
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/expected_steps.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/train_all.h"
 #include "coordinator/stages/first_picture.h"
 #include "coordinator/stages/level_settings.h"
+#include "coordinator/stages/product_area.h"
 #include "coordinator/stages/timed_run.h"
+#include "coordinator/tasks/rank_tasks.h"
 #include "core/base/amounts.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
@@ -16,6 +17,7 @@
 #include "core/scene/scene.h"
 #include "core/survey/view_kind.h"
 #include "evaluate/evaluate.h"
+#include "masks/make_masks.h"
 #include "merge/merge.h"
 #include "partition/altitude.h"
 #include "partition/make_blocks.h"
@@ -83,6 +85,13 @@ std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   return StageStamp::kDone;
 }
 
+std::string MasksBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
+  MaskTasks ranks(pipeline.comm, pipeline.settings.run, pipeline.project.folder, pipeline.verbose, pipeline.quiet);
+  masks::MakeMasks(pipeline.project.SurveyFolder(), pipeline.settings.masks, pipeline.settings.run.threads,
+                   pipeline.comm.size() > 1 ? &ranks : nullptr);
+  return StageStamp::kDone;
+}
+
 std::string PartitionBody(Pipeline& pipeline, const StageStamp& stamp) {
   const survey::Survey survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
   const double block_steps = ExpectedBlockSteps(pipeline.settings, pipeline.comm.size(), pipeline.comm.local_size());
@@ -139,7 +148,7 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 
 std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const products::ProductKinds kinds = KindsOf(pipeline);
-  products::ProductOptions options = pipeline.settings.products;
+  products::ProductOptions options = OptionsOfProducts(pipeline);
   options.ortho = options.ortho && kinds.ortho;
   options.dsm = options.dsm && kinds.dsm;
   if (!kinds.video) options.video_seconds = 0.0;

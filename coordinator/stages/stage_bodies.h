@@ -11,6 +11,7 @@ namespace skyquilt::coordinator {
 
 std::string SimulateBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string PrepareBody(Pipeline& pipeline, const StageStamp& stamp);
+std::string MasksBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string PartitionBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string TrainBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string MergeBody(Pipeline& pipeline, const StageStamp& stamp);

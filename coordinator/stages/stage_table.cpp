@@ -8,6 +8,7 @@
 #include "core/base/log.h"
 #include "core/checkpoint/archive.h"
 #include "core/scene/field_file.h"
+#include "core/survey/made_masks.h"
 #include "prepare/georeference/tags/photo_positions.h"
 #include "prepare/input/masks/masks.h"
 #include "prepare/video/find_videos.h"
@@ -37,6 +38,20 @@ std::string SurveyIdentity(const Project& project) {
   std::string identity = FileIdentity(SurveyFile(project)) + " " + FileIdentity(project.SurveyFolder() / "points.ply");
   // Surveys of older programs have none, and keep their identity.
   if (std::filesystem::exists(tracks)) identity.append(" ").append(FileIdentity(tracks));
+  return identity;
+}
+
+// With the masks that stage "masks" made, for stages that use them. Throws base::InputError when these are asked for and not there.
+std::string MaskedSurveyIdentity(const Pipeline& pipeline) {
+  const Project& project = pipeline.project;
+  const std::filesystem::path masks = survey::MadeMasksFile(project.SurveyFolder());
+  std::string identity = SurveyIdentity(project);
+  if (std::filesystem::exists(masks)) {
+    identity.append(" ").append(FileIdentity(masks));
+  } else if (pipeline.settings.masks.Any()) {
+    throw base::InputError(masks, "does not exist yet, but section [masks] asks for masks",
+                           "Run 'skyquilt masks " + project.folder.string() + "' first");
+  }
   return identity;
 }
 
@@ -125,11 +140,27 @@ FlatOptions ProductInputs(const Pipeline& pipeline) {
 
 FlatOptions SurfaceInputs(const Pipeline& pipeline) {
   FlatOptions inputs{{"scene", FileIdentity(pipeline.project.StampFile("merge"))},
-                     {"survey", SurveyIdentity(pipeline.project)},
+                     {"survey", MaskedSurveyIdentity(pipeline)},
                      {"boundary", BoundaryIdentity(pipeline)}};
   AddVertical(pipeline, &inputs);
   if (!KindsOf(pipeline).terrain) inputs["terrain"] = "none";
   return inputs;
+}
+
+// Of a file that an option names; empty for none. Throws base::InputError when it is not there, before earlier results are removed.
+std::string NamedFileIdentity(const std::string& file, const std::string& option) {
+  if (file.empty()) return "";
+  if (!std::filesystem::is_regular_file(file)) throw base::InputError(file, "no such file", "Correct " + option + ", or leave it empty");
+  return FileIdentity(file);
+}
+
+// Files count by their content, wherever they are.
+FlatOptions MaskInputs(const Pipeline& pipeline) {
+  const masks::MaskOptions& options = pipeline.settings.masks;
+  return {{"survey", SurveyIdentity(pipeline.project)},
+          {"network", NamedFileIdentity(options.segment, "masks.segment")},
+          {"network's configuration", NamedFileIdentity(options.segment_config, "masks.segment_config")},
+          {"ignored ground", NamedFileIdentity(options.ignore_ground, "masks.ignore_ground")}};
 }
 
 // Of the file with known outlines.
@@ -161,6 +192,14 @@ void RequireReadableTraining(const Project& project) {
   scene::ReadTrainReport(project.TrainReport());
   const std::filesystem::path context = project.ContextCheckpoint();
   if (std::filesystem::exists(context)) checkpoint::ArchiveReader(context).RequireVersion(scene::kCheckpointVersion);
+}
+
+// Without any masks to make the stage has nothing to show.
+Paths MasksProof(const Project& project) {
+  const std::optional<StageStamp> stamp = LoadStamp(project, "masks");
+  const auto none = [&](const char* input) { return stamp->inputs.contains(input) && stamp->inputs.at(input).empty(); };
+  if (stamp && none("network") && none("ignored ground")) return {};
+  return {survey::MadeMasksFile(project.SurveyFolder())};
 }
 
 bool RecallTraining(Pipeline& pipeline) {
@@ -209,6 +248,22 @@ std::vector<Stage> MakeTable() {
        .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },
        .body = PrepareBody,
        .on_new_inputs = OnNewInputs::kRefuse},
+      // Its results are in the survey's folder: the survey is loaded with them.
+      {.name = "masks",
+       .options = {"masks."},
+       .ignored_options = {"masks.segment", "masks.segment_config", "masks.ignore_ground"},  // inputs
+       .required = {{SurveyFile, "prepare"}},
+       .inputs = MaskInputs,
+       // Not network/ and photos/, which say themselves what they were made of.
+       .outputs =
+           [](const Project& p) {
+             const std::filesystem::path folder = survey::MadeMasksFolder(p.SurveyFolder());
+             return Paths{survey::MadeMasksFile(p.SurveyFolder()), folder / "combined", folder / "look", folder / "product_area.geojson"};
+           },
+       .completion_files = MasksProof,
+       .body = MasksBody,
+       .wanted = [](const Settings& settings) { return settings.masks.Any(); },
+       .refused_after = "train"},
       {.name = "partition",
        .options = {"partition.", "run.image_width"},
        .required = {{SurveyFile, "prepare"}},
@@ -228,7 +283,7 @@ std::vector<Stage> MakeTable() {
        .required = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
        .inputs =
            [](const Pipeline& pipeline) {
-             return FlatOptions{{"survey", SurveyIdentity(pipeline.project)}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
+             return FlatOptions{{"survey", MaskedSurveyIdentity(pipeline)}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
            },
        .outputs =
            [](const Project& p) {

@@ -1,6 +1,7 @@
 // The work of stage "surface".
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
+#include "coordinator/stages/product_area.h"
 #include "coordinator/stages/stage_bodies.h"
 #include "core/base/amounts.h"
 #include "core/base/log.h"
@@ -29,7 +30,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.info = &scene.info();
   input.survey = &survey;
   input.caster = products::CasterOf(scene, products::AppearanceOf(settings.products.exposure, scene.info()), session.threads());
-  input.boundary = products::BoundaryOf(grid, settings.products);
+  input.boundary = products::BoundaryOf(grid, OptionsOfProducts(pipeline));
   input.vertical = geo::VerticalNamed(settings.products.vertical);
   input.map_resolution_m = grid.resolution_m;
   input.memory_bytes = settings.run.MemoryLimitBytes();

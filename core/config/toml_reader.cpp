@@ -1,16 +1,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string_view>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
 #include "core/config/checked_toml.h"
 #include "core/config/options.h"
+#include "core/config/toml_json.h"
 
 namespace skyquilt::config {
 namespace {
@@ -228,6 +231,13 @@ toml::table Parse(const std::string& text, const std::string& origin) {
 }
 
 }  // namespace
+
+nlohmann::json TomlAsJson(const std::filesystem::path& file) {
+  const toml::table table = Parse(base::ReadFile(file), file.string());
+  std::ostringstream text;
+  text << toml::json_formatter{table};
+  return base::ParseJson(text.str());
+}
 
 void ReadToml(const std::filesystem::path& file, const Sections& sections) {
   ReadTomlText(base::ReadFile(file), file.string(), sections);

@@ -15,12 +15,14 @@ enum class SurfaceClass : uint8_t {
   kTree = 5,       // crowns and trunks
   kParkedCar = 6,  // part of the static scene; trucks and containers too
   kMovingCar = 7,  // at another place in every photo
-  kWater = 8
+  kWater = 8,
+  kPerson = 9,  // at another place in every photo
+  kLamp = 10    // street lamps: posts, arms and heads
 };
-inline constexpr int kSurfaceClasses = 9;
+inline constexpr int kSurfaceClasses = 11;
 
 // Name of a class by its number.
-inline constexpr std::array<const char*, kSurfaceClasses> kSurfaceClassNames = {"none", "roof",       "wall",       "ground", "road",
-                                                                                "tree", "parked car", "moving car", "water"};
+inline constexpr std::array<const char*, kSurfaceClasses> kSurfaceClassNames = {"none",       "roof",       "wall",  "ground", "road", "tree",
+                                                                                "parked car", "moving car", "water", "person", "lamp"};
 
 }  // namespace skyquilt::survey

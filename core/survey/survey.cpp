@@ -9,6 +9,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
+#include "core/survey/made_masks.h"
 #include "core/survey/points_ply.h"
 
 namespace skyquilt::survey {
@@ -174,6 +175,23 @@ void CheckTracks(const Survey& survey) {
   SKYQUILT_CHECK(survey.HasTracks() || (survey.tracks.Empty() && survey.kept_tracks.Empty()), "tracks of all points or of none");
 }
 
+// The masks that were made take the place of those that were given.
+void TakeMadeMasks(const std::filesystem::path& folder, Survey* survey) {
+  const std::optional<MadeMasks> masks = LoadMadeMasks(folder);
+  if (!masks) return;
+  const std::vector<MadeMask>& made = masks->photos;
+  const bool fits = std::equal(made.begin(), made.end(), survey->photos.begin(), survey->photos.end(),
+                               [](const MadeMask& mask, const Photo& photo) { return mask.photo == photo.name; });
+  if (!fits) {
+    throw base::InputError(MadeMasksFile(folder), "belongs to other photos than survey.json",
+                           "Remove the folder " + MadeMasksFolder(folder).string() + ", or run 'skyquilt prepare' again with --restart");
+  }
+  const std::filesystem::path pictures = std::filesystem::absolute(MadeMasksFolder(folder)).lexically_normal();
+  for (size_t i = 0; i < made.size(); ++i) {
+    if (!made[i].file.empty()) survey->photos[i].mask = (pictures / made[i].file).string();
+  }
+}
+
 }  // namespace
 
 bool Survey::HasTracks() const {
@@ -270,6 +288,7 @@ Survey LoadSurvey(const std::filesystem::path& folder) {
     survey.tracks = std::move(tracks.points);
     survey.kept_tracks = std::move(tracks.kept_points);
   }
+  TakeMadeMasks(folder, &survey);
   return survey;
 }
 

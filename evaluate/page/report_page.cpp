@@ -142,7 +142,8 @@ std::string BuildReportPage(const ReportInput& input) {
   const std::string brightness = BrightnessSection(input), made = SurfaceSection(input), found = BuildingsSection(input);
   const std::string map = input.metrics->ortho ? OrthoSection(*input.metrics->ortho, input.ortho_pictures) : "";
   const std::string walls = ElevationSection(input.elevations, input.survey->georeferenced);
-  const std::string control = ControlSection(input), files = InputSection(input), time = TimeSection(*input.metrics);
+  const std::string control = ControlSection(input), files = InputSection(input), masks = MasksSection(input.masks),
+                    time = TimeSection(*input.metrics);
   PageFrame frame{.title = input.title,
                   .window_title = "Skyquilt report",
                   .subtitle = fmt::format("Survey report \xC2\xB7 {} \xC2\xB7 {} photos, {} blocks", ShownDate(input.metrics->date),
@@ -155,14 +156,15 @@ std::string BuildReportPage(const ReportInput& input) {
   frame.anchors.emplace_back("geo", "Geo-reference");
   if (!control.empty()) frame.anchors.emplace_back("control", "Control points");
   if (!files.empty()) frame.anchors.emplace_back("input", "Photo folder");
+  if (!masks.empty()) frame.anchors.emplace_back("masks", "Masks");
   frame.anchors.emplace_back("details", "Details");
   if (!brightness.empty()) frame.anchors.emplace_back("brightness", "Brightness");
   frame.anchors.emplace_back("training", "Training");
   if (!time.empty()) frame.anchors.emplace_back("time", "Time");
   frame.anchors.emplace_back("method", "Method");
   return PageBegin(frame) + SummarySection(input) + WarningsBanner(*input.metrics) + MapSection(input) + PhotoSection(input) + map + walls + made +
-         found + GeoSection(input) + control + files + DetailsSection(input) + brightness + TrainingSection(input) + time + MethodSection(input) +
-         PageEnd();
+         found + GeoSection(input) + control + files + masks + DetailsSection(input) + brightness + TrainingSection(input) + time +
+         MethodSection(input) + PageEnd();
 }
 
 }  // namespace skyquilt::evaluate::page

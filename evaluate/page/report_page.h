@@ -14,6 +14,7 @@
 #include "evaluate/page/drawn_map.h"
 #include "evaluate/page/elevation_section.h"
 #include "evaluate/page/input_files.h"
+#include "evaluate/page/masks_section.h"
 #include "evaluate/page/ortho_section.h"
 #include "partition/block.h"
 
@@ -44,6 +45,7 @@ struct ReportInput {
   const BrightnessReport* brightness = nullptr;           // nothing or empty: no such section
   const buildings::BuildingsReport* buildings = nullptr;  // nothing: no such section
   InputFiles files;                                       // of the photo folder
+  MasksReport masks;                                      // that were made; none: no such section
   std::vector<PhotoImages> images;                        // entry i belongs to metrics->photos[i]
   std::vector<control::MarkPicture> mark_pictures;        // of the survey's control points, in their order
   std::optional<MapBackground> background;

@@ -35,6 +35,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
   for (const control::MarkPicture& one : page.mark_pictures) kept.insert({one.photo, one.render});
   for (const ElevationPicture& one : page.elevations) kept.insert(one.image);
   for (const OrthoPicture& one : page.ortho_pictures) kept.insert({one.map, one.truth});
+  for (const MaskPicture& one : page.masks.pictures) kept.insert(one.image);
   if (found != nullptr) {
     for (const buildings::BuildingPicture& one : found->pictures) kept.insert(one.file);
   }
@@ -43,7 +44,7 @@ void RemoveStalePictures(const std::filesystem::path& report_folder, const Repor
   for (const auto& entry : std::filesystem::directory_iterator(report_folder / "images", ignored)) {
     const std::string name = entry.path().filename().string();
     const bool ours = name.starts_with("photo_") || name.starts_with("building_") || name.starts_with("elevation_") || name.starts_with("control_") ||
-                      name.starts_with("preview_") || name.starts_with("ortho_");
+                      name.starts_with("preview_") || name.starts_with("ortho_") || name.starts_with("mask_");
     if (ours && !kept.contains("images/" + name)) stale.push_back(entry.path());
   }
   for (const std::filesystem::path& file : stale) std::filesystem::remove(file, ignored);
@@ -120,6 +121,7 @@ void WriteReport(const EvaluateInput& input, const metrics::Metrics& metrics, co
   page.brightness = &brightness;
   page.images = pictures.written().images;
   page.files = ReadInputFiles(input.project_folder / "survey" / "input.csv");
+  page.masks = CopyMasks(input.project_folder / "survey", report_folder);
   page.mark_pictures = std::move(marks);
   if (found != nullptr) {
     const skyquilt::buildings::BuildingSet& set = found->compared.set;

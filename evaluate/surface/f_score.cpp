@@ -32,7 +32,8 @@ struct SampleDistance {
 bool IsScored(uint8_t class_id) {
   using survey::SurfaceClass;
   const auto is = [&](SurfaceClass one) { return class_id == static_cast<uint8_t>(one); };
-  return class_id < survey::kSurfaceClasses && !is(SurfaceClass::kNone) && !is(SurfaceClass::kMovingCar) && !is(SurfaceClass::kWater);
+  return class_id < survey::kSurfaceClasses && !is(SurfaceClass::kNone) && !is(SurfaceClass::kMovingCar) && !is(SurfaceClass::kPerson) &&
+         !is(SurfaceClass::kWater);
 }
 
 double AreaPerSample(double gsd_m) {

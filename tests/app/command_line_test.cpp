@@ -18,7 +18,7 @@
 namespace skyquilt::app {
 namespace {
 
-const std::vector<std::string> kCommands = {"run", "simulate", "prepare", "partition", "train", "merge", "render", "evaluate", "info"};
+const std::vector<std::string> kCommands = {"run", "simulate", "prepare", "masks", "partition", "train", "merge", "render", "evaluate", "info"};
 
 TEST(CommandLine, EveryCommandHasHelpWithExamples) {
   for (const std::string& command : kCommands) {

@@ -10,11 +10,11 @@
 #include "core/base/random.h"
 #include "core/geo/enu_frame.h"
 #include "core/gis/geotiff.h"
+#include "core/scene/point_heights.h"
 #include "products/field_preview.h"
 #include "products/map_products.h"
 #include "products/photo_map/overlap_gains.h"
 #include "products/photo_map/photo_choice.h"
-#include "products/sparse_surface.h"
 #include "tests/products/analytic_scene.h"
 #include "tests/products/patterned_survey.h"
 #include "tests/support/temporary_folder.h"
@@ -64,7 +64,7 @@ TEST(SparseSurface, SingleWrongPointsDoNotCountAndGapsAreFilled) {
   std::erase_if(survey.points, [](const survey::SparsePoint& point) { return point.x_in_enu.x() > 15.0 && point.x_in_enu.y() > 10.0; });
   survey.points.push_back({.x_in_enu = {0.0, 0.0, std::nan("")}});
   Eigen::AlignedBox2d area(Eigen::Vector2d(-30.0, -25.0), Eigen::Vector2d(30.0, 25.0));
-  const scene::HeightMap heights = HeightsOfPoints(SteadyPoints(survey), area);
+  const scene::HeightMap heights = scene::HeightsOfPoints(survey::SteadyPoints(survey), area);
   for (double x = -29.0; x < 30.0; x += 1.3) {
     for (double y = -24.0; y < 25.0; y += 1.3) {
       if (PatternedSurvey::InHouse(x, y, 4.0) && !PatternedSurvey::InHouse(x, y, -3.0)) continue;
@@ -81,11 +81,11 @@ TEST(SparseSurface, TheAreaIsWherePhotosAndPointsAre) {
   camera.params = {50.0, 50.0, 50.0, 50.0};  // 45 degrees to each side
   survey.cameras = {camera};
   survey.photos = {NadirPhoto({0.0, 0.0, 110.0}, "a"), NadirPhoto({50.0, 0.0, 110.0}, "b"), NadirPhoto({500.0, 0.0, -5.0}, "below")};
-  const Eigen::AlignedBox2d seen = SeenGround(survey, {{0.0, 0.0, 10.0}}, 10.0);
+  const Eigen::AlignedBox2d seen = survey::SeenGround(survey, {{0.0, 0.0, 10.0}}, 10.0);
   EXPECT_LT((seen.min() - Eigen::Vector2d(-100.0, -100.0)).norm() + (seen.max() - Eigen::Vector2d(150.0, 100.0)).norm(), 1e-6);
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i <= 100; ++i) points.emplace_back(-20.0 + i, -300.0 + 6.0 * i, 10.0);
-  const Eigen::AlignedBox2d both = SeenGround(survey, points, 10.0);
+  const Eigen::AlignedBox2d both = survey::SeenGround(survey, points, 10.0);
   EXPECT_NEAR(both.min().x(), -20.0, 5.0);
   EXPECT_NEAR(both.max().x(), 80.0, 5.0);
   EXPECT_NEAR(both.min().y(), -100.0, 1e-6);
@@ -95,7 +95,7 @@ TEST(SparseSurface, TheAreaIsWherePhotosAndPointsAre) {
   survey.photos[0].cam_from_enu.rotation =
       Eigen::Quaterniond(Eigen::AngleAxisd(-0.5 * 3.14159265358979, Eigen::Vector3d::UnitX())) * survey.photos[0].cam_from_enu.rotation;
   survey.photos[0].cam_from_enu.translation = -(survey.photos[0].cam_from_enu.rotation * Eigen::Vector3d(0.0, 0.0, 110.0));
-  const Eigen::AlignedBox2d horizon = SeenGround(survey, {{0.0, 0.0, 10.0}}, 10.0);
+  const Eigen::AlignedBox2d horizon = survey::SeenGround(survey, {{0.0, 0.0, 10.0}}, 10.0);
   ASSERT_FALSE(horizon.isEmpty());
   EXPECT_LE(horizon.sizes().maxCoeff(), 2.0 * 100.0 * std::sqrt(3.0) + 1e-6);
 }

@@ -140,6 +140,15 @@ TEST(Presets, BadOptionsAreRefusedByName) {
     o.place = "tidalflat";
     o.moving_cars = 2;
   });
+  ExpectRefused("people", [](SimulateOptions& o) {
+    o.place = "tidalflat";
+    o.people = 2;
+  });
+  ExpectRefused("lamps", [](SimulateOptions& o) {
+    o.place = "solar_farm";
+    o.lamps = 2;
+  });
+  ExpectRefused("class_images", [](SimulateOptions& o) { o.class_images = "some"; });
 }
 
 // A swapped longitude of more than 90 degrees is no latitude.

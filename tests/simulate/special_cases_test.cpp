@@ -103,7 +103,7 @@ class BusyTown : public testing::Test {
   // Depth and class in the middle of a photo from straight above.
   static std::pair<double, SurfaceClass> SeenFromAbove(const Vector3d& camera_at) {
     const camera::Camera camera{camera::CameraModel::kSimplePinhole, 9, 9, {60.0, 4.5, 4.5}};
-    MovingScene nothing{{}, {}, raytrace::TracedScene({}, {})};
+    MovingScene nothing{{}, {}, {}, raytrace::TracedScene({}, {})};
     const SurfaceImages seen = PhotoRenderer(*world_, camera, 1, false).Surfaces(PoseFromGimbal(camera_at, 0.0, -90.0, 0.0), nothing, *threads_);
     return {static_cast<double>(*seen.z_depth.At(4, 4)), static_cast<SurfaceClass>(*seen.classes.At(4, 4))};
   }

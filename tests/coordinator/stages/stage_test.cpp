@@ -8,6 +8,7 @@
 #include "coordinator/stages/stage_bodies.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/survey/made_masks.h"
 #include "tests/support/connect_alone.h"
 #include "tests/support/error_of.h"
 #include "tests/support/project_fixture.h"
@@ -149,6 +150,39 @@ TEST_F(StageFiles, VideosAndTheirOptionsAreInputsOfSurveysOfVideosAlone) {
   EXPECT_FALSE(StageOptions(stage, pipeline.settings).contains("prepare.video_limit"));
   base::WriteFileAtomically(folder / "a.SRT", "");
   EXPECT_NE(stage.inputs(pipeline).at("videos"), inputs.at("videos"));
+}
+
+// The files of masks count by their content, and what was trained without them stays as it is until the user removes it.
+TEST_F(StageFiles, MasksOfOtherFilesAreRefusedOnceTrainingHasBegun) {
+  const auto comm = comm::ConnectAlone();
+  Pipeline pipeline{.comm = *comm, .project = project_, .settings = {}};
+  const Stage& stage = StageNamed("masks");
+  Settings before = pipeline.settings;
+  EXPECT_FALSE(stage.wanted(pipeline.settings));
+  Touch(project_.SurveyFolder() / "survey.json");
+  pipeline.settings.masks.ignore_ground = (folder_ / "lake.geojson").string();
+  EXPECT_TRUE(stage.wanted(pipeline.settings));
+  EXPECT_EQ(StageOptions(stage, before), StageOptions(stage, pipeline.settings));
+  EXPECT_NE(InputErrorOf([&] { stage.inputs(pipeline); }).find("lake.geojson"), std::string::npos);
+  Touch(folder_ / "lake.geojson", "one");
+  const FlatOptions one = stage.inputs(pipeline);
+  Touch(folder_ / "lake.geojson", "two");
+  EXPECT_NE(stage.inputs(pipeline), one);
+  // Training is not begun without masks that are asked for.
+  EXPECT_NE(InputErrorOf([&] { StageNamed("train").inputs(pipeline); }).find("skyquilt masks"), std::string::npos);
+  EXPECT_NO_THROW(StageNamed("partition").inputs(pipeline));
+  Touch(survey::MadeMasksFile(project_.SurveyFolder()));
+  const FlatOptions with_masks = StageNamed("train").inputs(pipeline);
+  pipeline.settings.masks = {};
+  EXPECT_EQ(StageNamed("train").inputs(pipeline), with_masks);
+  std::filesystem::remove(survey::MadeMasksFile(project_.SurveyFolder()));
+  EXPECT_NE(StageNamed("train").inputs(pipeline), with_masks);
+
+  pipeline.settings.masks.ignore_ground = (folder_ / "lake.geojson").string();
+  SaveStamp(project_, {.stage = "train", .state = StageStamp::kRunning, .options = {}, .inputs = {}});
+  const std::string error = UsageErrorOf([&] { RunStage(pipeline, "masks"); });
+  for (const char* part : {"'train'", "ignored ground", "skyquilt masks", "--restart"}) EXPECT_NE(error.find(part), std::string::npos) << error;
+  EXPECT_FALSE(LoadStamp(project_, "masks"));
 }
 
 TEST(Stages, HaveUniqueNamesAndNeedOnlyEarlierOnes) {

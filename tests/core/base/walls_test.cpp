@@ -24,14 +24,15 @@ const Arrows& AllowedIncludes() {
   static const Arrows allowed = [] {
     Arrows arrows = {
         {"app",
-         {"bench", "viewer", "odm", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "tour",
-          "evaluate", "core"}},
+         {"bench", "viewer", "odm", "coordinator", "simulate", "prepare", "masks", "partition", "worker", "merge", "products", "surface",
+          "buildings", "tour", "evaluate", "core"}},
         // Of app only settings/, which says what options a person chose.
         {"python",
-         {"app", "coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate", "core"}},
+         {"app", "coordinator", "simulate", "prepare", "masks", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate", "core"}},
         {"bench", {"coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate", "core"}},
         {"viewer", {"coordinator", "prepare", "partition", "products", "surface", "buildings", "tour", "core"}},
-        {"coordinator", {"simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "tour", "evaluate", "core"}},
+        {"coordinator",
+         {"simulate", "prepare", "masks", "partition", "worker", "merge", "products", "surface", "buildings", "tour", "evaluate", "core"}},
         {"odm", {"coordinator", "prepare", "surface", "core"}},
         {"buildings", {"surface", "core"}},
         {"tour", {"products", "surface", "core"}},
@@ -46,13 +47,13 @@ const Arrows& AllowedIncludes() {
         {"core/scene",
          {"core/render", "core/field", "core/encoding", "core/brightness", "core/camera", "core/geo", "core/linear", "core/checkpoint", "core/image",
           "core/base"}},
-        {"core/metrics", {"core/image", "core/base"}},
+        {"core/metrics", {"core/network", "core/image", "core/base"}},
         {"core/gis", {"core/geo", "core/image", "core/base"}},
     };
     for (const char* room : {"base", "linear"}) arrows[std::string("core/") + room] = {};
-    for (const char* room : {"config", "checkpoint", "comm", "image", "kernel", "raytrace", "page"})
+    for (const char* room : {"config", "checkpoint", "comm", "image", "kernel", "network", "raytrace", "page"})
       arrows[std::string("core/") + room] = {"core/base"};
-    for (const char* room : {"simulate", "prepare", "partition", "worker", "merge", "products", "surface"}) arrows[room] = {"core"};
+    for (const char* room : {"simulate", "prepare", "masks", "partition", "worker", "merge", "products", "surface"}) arrows[room] = {"core"};
     return arrows;
   }();
   return allowed;
@@ -118,6 +119,7 @@ const std::vector<Library>& Libraries() {
        {"opencv2/imgcodecs.hpp", "opencv2/opencv.hpp"}},
       {"libheif", std::regex("libheif/.*"), {"core/image"}, {"libheif/heif.h"}},
       {"LibRaw", std::regex("libraw/.*"), {"core/image"}, {"libraw/libraw.h"}},
+      {"OpenCV's networks", std::regex("opencv2/dnn(\\.hpp|/.*)"), {"core/network"}, {"opencv2/dnn.hpp"}},
       {"Exiv2", std::regex("exiv2/.*"), {"core/survey"}, {"exiv2/exiv2.hpp"}},
       {"Embree", std::regex("embree[0-9]*/.*"), {"core/raytrace"}, {"embree3/rtcore.h"}},
       {"GDAL", std::regex("(gdal/)?(gdal|ogr_|ogrsf|cpl_|vrt)[^/]*\\.h"), {"core/gis"}, {"gdal_priv.h", "gdal/ogr_spatialref.h"}},

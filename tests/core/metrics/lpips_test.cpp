@@ -9,6 +9,7 @@
 #include "core/base/child_process.h"
 #include "core/base/errors.h"
 #include "tests/support/error_of.h"
+#include "tests/support/made_onnx.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skyquilt::metrics {
@@ -17,39 +18,7 @@ namespace {
 using image::Image8;
 using image::ImageF;
 
-// The few protobuf fields that an ONNX model needs.
-std::string Varint(uint64_t value) {
-  std::string bytes;
-  for (; value >= 128; value >>= 7U) bytes.push_back(static_cast<char>(value | 0x80U));
-  bytes.push_back(static_cast<char>(value));
-  return bytes;
-}
-std::string Number(uint64_t field, uint64_t value) {
-  return Varint(field << 3U) + Varint(value);
-}
-std::string Text(uint64_t field, const std::string& content) {
-  return Varint(field << 3U | 2U) + Varint(content.size()) + content;
-}
-
-std::string Value(const std::string& name, const std::vector<int>& shape) {
-  std::string dims;
-  for (const int size : shape) dims += Text(1, size > 0 ? Number(1, static_cast<uint64_t>(size)) : Text(2, "free" + std::to_string(-size)));
-  return Text(1, name) + Text(2, Text(1, Number(1, 1) + Text(2, dims)));
-}
-std::string Node(const std::string& type, const std::vector<std::string>& inputs, const std::string& output, const std::string& attributes = "") {
-  std::string node;
-  for (const std::string& input : inputs) node += Text(1, input);
-  return node + Text(2, output) + Text(3, "node_" + output) + Text(4, type) + attributes;
-}
-
-std::string Flag(const std::string& name, uint64_t value) {
-  return Text(5, Text(1, name) + Number(3, value) + Number(20, 2));
-}
-std::string Axes(const std::vector<uint64_t>& axes) {
-  std::string numbers;
-  for (const uint64_t axis : axes) numbers += Number(8, axis);
-  return Text(5, Text(1, "axes") + numbers + Number(20, 7));
-}
+using namespace onnx;
 
 // Nodes that divide `input` by its norm over the channels, as LPIPS does with features; the result is named prefix + "unit".
 std::string UnitLength(const std::string& input, const std::string& prefix) {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace skyquilt::metrics {
+namespace skyquilt::network {
 
 struct OnnxInput {
   std::string name;
@@ -21,4 +21,4 @@ std::vector<OnnxInput> OnnxInputs(std::string_view model);
 // with free sizes gives NaN.
 std::string WithInputShape(std::string_view model, const std::vector<int64_t>& shape);
 
-}  // namespace skyquilt::metrics
+}  // namespace skyquilt::network

@@ -1,4 +1,4 @@
-#include "coordinator/poses/rank_tasks.h"
+#include "coordinator/tasks/rank_tasks.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,12 @@
 #include <thread>
 #include <vector>
 
-#include "coordinator/poses/task_message.h"
 #include "coordinator/ranks/rank_messages.h"
+#include "coordinator/tasks/task_message.h"
 #include "core/base/cancel.h"
 #include "core/base/file.h"
 #include "tests/coordinator/scheduler/fake_ranks.h"
+#include "tests/masks/mask_survey.h"
 #include "tests/prepare/poses/fake_extractor.h"
 #include "tests/support/error_of.h"
 #include "tests/support/made_database.h"
@@ -40,7 +41,7 @@ class RankTasksTest : public testing::Test {
       ranks_.emplace_back([this, rank] {
         FakeRank comm(network_, rank);
         const comm::Message message = WaitForMessage(comm);
-        if (message.tag == kTagPoses) ServeTasks(comm, message.bytes);
+        if (message.tag == kTagTasks) ServeTasks(comm, message.bytes);
       });
     }
   }
@@ -95,6 +96,36 @@ TEST_F(RankTasksTest, AFailureNamesTheRankAndItsLog) {
   const std::vector<prepare::poses::PoseTask> others = {Part(1), Part(2)};
   ranks.Run(others, [](double) {});
   EXPECT_TRUE(std::filesystem::exists(folder_ / "part_2.db"));
+}
+
+TEST_F(RankTasksTest, RanksMakeTheMasksThatOneProcessMakes) {
+  const std::filesystem::path folder = folder_ / "masked", survey = folder / "survey";
+  survey::SaveSurvey(masks::MakeMaskSurvey(folder, 7, false), survey);
+  const std::filesystem::path lake = folder / "lake.geojson";
+  base::WriteFileAtomically(lake, R"({"type":"Polygon","coordinates":[[[40.1,-30],[60,-30],[60,30],[40.1,30],[40.1,-30]]]})");
+  const masks::MaskOptions options{.segment = "", .segment_config = "", .ignore_ground = lake.string()};
+  {
+    MaskTasks ranks(root_, {.threads = 2}, folder_.path(), false, true);
+    EXPECT_EQ(ranks.threads(), 1);
+    masks::MakeMasks(survey, options, 1, &ranks);
+  }
+  const std::string shared = base::ReadFile(survey::MadeMasksFile(survey));
+  std::filesystem::remove_all(survey::MadeMasksFolder(survey));
+  masks::MakeMasks(survey, options, 1);
+  EXPECT_EQ(base::ReadFile(survey::MadeMasksFile(survey)), shared);
+}
+
+TEST_F(RankTasksTest, AFailedMaskNamesTheRankAndTheRemedy) {
+  const std::filesystem::path folder = folder_ / "masked", survey = folder / "survey";
+  survey::SaveSurvey(masks::MakeMaskSurvey(folder, 3, false), survey);
+  base::WriteFileAtomically(folder / "lake.geojson", R"({"type":"Polygon","coordinates":[[[0,-30],[60,-30],[60,30],[0,30],[0,-30]]]})");
+  base::WriteFileAtomically(folder / "images/sub/1.png", "no picture");
+  MaskTasks ranks(root_, {.threads = 2}, folder_.path(), false, true);
+  const masks::MaskOptions options{.segment = "", .segment_config = "", .ignore_ground = (folder / "lake.geojson").string()};
+  const std::string error = InputErrorOf([&] { masks::MakeMasks(survey, options, 1, &ranks); });
+  EXPECT_NE(error.find("rank 1 on "), std::string::npos) << error;
+  EXPECT_NE(error.find("1.png"), std::string::npos) << error;
+  EXPECT_FALSE(std::filesystem::exists(survey::MadeMasksFile(survey)));
 }
 
 // Rank 0 ends the search and the program at once, while a task runs.

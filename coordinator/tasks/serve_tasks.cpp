@@ -1,12 +1,14 @@
 #include <atomic>
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "coordinator/poses/rank_tasks.h"
-#include "coordinator/poses/task_message.h"
 #include "coordinator/ranks/failure.h"
 #include "coordinator/ranks/rank_messages.h"
+#include "coordinator/tasks/rank_tasks.h"
+#include "coordinator/tasks/task_message.h"
 #include "core/base/cancel.h"
 #include "core/base/json_text.h"
 #include "core/base/log.h"
@@ -17,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-// While a task runs: tells rank 0 about twice a second how much more of it is done, and stops it when rank 0 ends the search.
+// While a task runs: tells rank 0 about twice a second how much more of it is done, and stops it when rank 0 ends the work.
 class TaskReporter {
  public:
   TaskReporter(comm::Communicator& comm, size_t number) : comm_(comm), number_(number) {}
@@ -52,13 +54,26 @@ class TaskReporter {
   bool over_ = false;
 };
 
-// False when rank 0 has ended the search in the meantime.
-bool RunTask(comm::Communicator& comm, const std::string& bytes, prepare::poses::TaskRunner& runner) {
+// Runs a task that came as a text.
+using TextRunner = std::function<void(const std::string& task, const std::function<void(double more)>& on_progress)>;
+
+TextRunner PoseRunner(int threads, int rank) {
+  const auto runner = std::make_shared<prepare::poses::TaskRunner>(threads, "colmap_rank_" + std::to_string(rank) + ".log");
+  return [runner](const std::string& task, const auto& on_progress) { runner->Run(prepare::poses::TaskFromText(task), on_progress); };
+}
+
+TextRunner RunnerOfMasks(int threads) {
+  const auto runner = std::make_shared<masks::MaskRunner>(threads);
+  return [runner](const std::string& task, const auto& on_progress) { runner->Run(masks::TaskFromText(task), on_progress); };
+}
+
+// False when rank 0 has ended the work in the meantime.
+bool RunTask(comm::Communicator& comm, const std::string& bytes, const TextRunner& runner) {
   const auto [number, text] = SplitTaskMessage(bytes);
   TaskReporter reporter(comm, number);
   std::string failure;
   try {
-    runner.Run(prepare::poses::TaskFromText(text), [&reporter](double more) { reporter(more); });
+    runner(text, [&reporter](double more) { reporter(more); });
   } catch (...) {
     failure = base::JsonText(ToJson(CurrentFailure()));
   }
@@ -85,7 +100,8 @@ void ServeTasks(comm::Communicator& comm, const std::string& setup_text) {
     options.threads = setup.at("threads").get<int>();
     hello["threads"] = options.UsableThreads();
     const int threads = std::stoi(Register(comm, hello, kTagThreads));
-    prepare::poses::TaskRunner runner(threads, "colmap_rank_" + std::to_string(comm.rank()) + ".log");
+    const bool masks = setup.value("work", NameOf(TaskKind::kPoses)) == NameOf(TaskKind::kMasks);
+    const TextRunner runner = masks ? RunnerOfMasks(threads) : PoseRunner(threads, comm.rank());
     while (true) {
       const comm::Message message = WaitForMessage(comm);
       if (message.tag == kTagDone) return;

@@ -5,7 +5,14 @@
 #include <string>
 #include <utility>
 
+#include "coordinator/tasks/rank_tasks.h"
+
 namespace skyquilt::coordinator {
+
+// In the setup that rank 0 sends.
+inline const char* NameOf(TaskKind kind) {
+  return kind == TaskKind::kMasks ? "masks" : "poses";
+}
 
 inline std::string TaskMessage(size_t number, const std::string& rest) {
   return std::to_string(number) + "\n" + rest;

@@ -1,13 +1,13 @@
-#include "coordinator/poses/rank_tasks.h"
+#include "coordinator/tasks/rank_tasks.h"
 
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "coordinator/poses/task_message.h"
 #include "coordinator/ranks/failure.h"
 #include "coordinator/ranks/rank_messages.h"
+#include "coordinator/tasks/task_message.h"
 #include "core/base/json_text.h"
 #include "core/base/log.h"
 
@@ -15,39 +15,40 @@ namespace skyquilt::coordinator {
 
 using nlohmann::json;
 
-RankTasks::RankTasks(comm::Communicator& comm, const RunOptions& options, std::filesystem::path folder, bool verbose, bool quiet)
-    : comm_(comm), own_threads_(options.threads), folder_(std::move(folder)), verbose_(verbose), quiet_(quiet) {}
+TextTasks::TextTasks(TaskKind kind, comm::Communicator& comm, const RunOptions& options, std::filesystem::path folder, bool verbose, bool quiet)
+    : kind_(kind), comm_(comm), own_threads_(options.threads), folder_(std::move(folder)), verbose_(verbose), quiet_(quiet) {}
 
-const std::vector<GroupMember>& RankTasks::Members() {
+const std::vector<GroupMember>& TextTasks::Members() {
   if (group_ == nullptr) {
     shared_.emplace(folder_);
-    const json setup = {{"threads", own_threads_}, {"shared", shared_->Proof()}, {"verbose", verbose_}, {"quiet", quiet_}};
-    auto group = std::make_unique<RankGroup>(comm_, kTagPoses, base::JsonText(setup));
+    const json setup = {{"work", NameOf(kind_)}, {"threads", own_threads_}, {"shared", shared_->Proof()}, {"verbose", verbose_}, {"quiet", quiet_}};
+    auto group = std::make_unique<RankGroup>(comm_, kTagTasks, base::JsonText(setup));
     members_ = group->WaitForRanks();
     group_ = std::move(group);
     for (const GroupMember& member : members_) comm_.Send(member.rank, kTagThreads, std::to_string(member.threads));
-    base::LogInfo("features and matches are found by {} ranks with {} threads at most", members_.size(), threads());
+    base::LogInfo("{} by {} ranks with {} threads at most", kind_ == TaskKind::kPoses ? "features and matches are found" : "masks are made",
+                  members_.size(), threads());
   }
   return members_;
 }
 
-int RankTasks::size() {
+int TextTasks::size() {
   return static_cast<int>(Members().size());
 }
 
-int RankTasks::threads() {
+int TextTasks::threads() {
   int most = 1;
   for (const GroupMember& member : Members()) most = std::max(most, member.threads);
   return most;
 }
 
-void RankTasks::Run(std::span<const prepare::poses::PoseTask> tasks, const prepare::poses::TaskProgress& on_progress) {
+void TextTasks::Run(std::span<const std::string> tasks, const std::function<void(double more)>& on_progress) {
   size_t next = 0, n_done = 0;
   std::map<size_t, int> rank_of;  // by number of a task that a rank has
   const auto hand_out = [&](int rank) {
     if (next == tasks.size()) return;
     rank_of.emplace(next_number_, rank);
-    comm_.Send(rank, kTagTask, TaskMessage(next_number_++, prepare::poses::ToText(tasks[next++])));
+    comm_.Send(rank, kTagTask, TaskMessage(next_number_++, tasks[next++]));
   };
   for (const GroupMember& member : Members()) hand_out(member.rank);
   while (n_done < tasks.size()) {
@@ -68,6 +69,12 @@ void RankTasks::Run(std::span<const prepare::poses::PoseTask> tasks, const prepa
     ++n_done;
     hand_out(message.source);
   }
+}
+
+void RankTasks::Run(std::span<const prepare::poses::PoseTask> tasks, const prepare::poses::TaskProgress& on_progress) {
+  std::vector<std::string> texts;
+  for (const prepare::poses::PoseTask& task : tasks) texts.push_back(prepare::poses::ToText(task));
+  tasks_.Run(texts, on_progress);
 }
 
 }  // namespace skyquilt::coordinator

@@ -1,10 +1,10 @@
-#include "core/metrics/onnx_model.h"
+#include "core/network/onnx_model.h"
 
 #include <algorithm>
 #include <optional>
 #include <set>
 
-namespace skyquilt::metrics {
+namespace skyquilt::network {
 namespace {
 
 // Field numbers of onnx.proto.
@@ -173,4 +173,4 @@ std::string WithInputShape(std::string_view model, const std::vector<int64_t>& s
   return new_model;
 }
 
-}  // namespace skyquilt::metrics
+}  // namespace skyquilt::network

@@ -50,7 +50,8 @@ void BindStages(py::module_& module) {
   module.def("sections", [] {
     std::vector<std::string> names;
     coordinator::Settings settings;
-    for (const config::Sections::Entry& entry : settings.AllSections().entries()) names.push_back(entry.name);
+    const config::Sections sections = settings.AllSections();
+    for (const config::Sections::Entry& entry : sections.entries()) names.push_back(entry.name);
     return names;
   });
   module.def("presets", &app::PresetNames);

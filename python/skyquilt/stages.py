@@ -34,9 +34,8 @@ def _call(stage: str, folder: PathLike, photos: PathLike | None, model: PathLike
           verbose: bool, progress: Progress | None, options: dict[str, Any]) -> None:
     if progress is not None and not callable(progress):
         raise UsageError(f"progress must be a function of a label and a share, not {type(progress).__name__}")
-    _skyquilt.call_stage(stage, pathlib.Path(folder), pathlib.Path(photos) if photos is not None else pathlib.Path(),
-                         pathlib.Path(model) if model is not None else pathlib.Path(), os.fspath(config) if config is not None else "",
-                         overrides(stage, options), bool(restart), bool(quiet), bool(verbose), progress)
+    photos_, model_, config_ = ("" if path is None else os.fspath(path) for path in (photos, model, config))
+    _skyquilt.call_stage(stage, os.fspath(folder), photos_, model_, config_, overrides(stage, options), bool(restart), bool(quiet), bool(verbose), progress)
 
 
 def run(photos: PathLike | None, out: PathLike, *, place: str | None = None, model: PathLike | None = None, config: PathLike | None = None,

@@ -5,8 +5,7 @@ import subprocess
 import sys
 import unittest
 
-import harness
-from support import PRELOADED, PROGRAM, SOURCE, TINY, InFolder, scene_project
+from support import PRELOADED, PROGRAM, SOURCE, TINY, InFolder, harness, scene_project
 
 try:
     import matplotlib

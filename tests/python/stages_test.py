@@ -5,8 +5,7 @@ import sys
 import threading
 import unittest
 
-import harness
-from support import PROGRAM, TINY, InFolder
+from support import PROGRAM, TINY, InFolder, harness
 
 import skyquilt
 from skyquilt._options import overrides

@@ -25,7 +25,7 @@ Asked RandomPoints(const Eigen::Vector3d& low, const Eigen::Vector3d& high, int 
   base::Random random(8);
   Asked asked;
   for (int i = 0; i < n; ++i) {
-    const Eigen::Vector3d share{random.Uniform(), random.Uniform(), random.Uniform()};
+    const Eigen::Vector3d share{random.Uniform(0.0, 1.0), random.Uniform(0.0, 1.0), random.Uniform(0.0, 1.0)};
     asked.points.emplace_back(low + share.cwiseProduct(high - low));
     asked.directions.emplace_back(Eigen::Vector3d{random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), random.Uniform(-1.0, -0.1)}.normalized());
   }

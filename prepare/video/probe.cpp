@@ -58,7 +58,11 @@ int RotationOf(const nlohmann::json& stream) {
 
 VideoInfo Probe(const std::filesystem::path& file) {
   std::vector<std::string> arguments = {
-      "-v", "error", "-of", "json", "-show_entries",
+      "-v",
+      "error",
+      "-of",
+      "json",
+      "-show_entries",
       "stream=codec_type,codec_name,width,height,avg_frame_rate,field_order,duration,sample_aspect_ratio:stream_tags:stream_side_data:"
       "stream_disposition=attached_pic:format=duration,format_name:format_tags"};
   const std::vector<std::string> input = InputArguments(file);

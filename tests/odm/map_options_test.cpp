@@ -39,6 +39,14 @@ TEST(MapOptions, ProductsAreMadeWhenAskedFor) {
   EXPECT_TRUE(flat.surface.cloud) << "--skip-3dmodel leaves the point cloud";
 }
 
+TEST(MapOptions, FramesOfVideosAreAsManyAndAsLargeAsAskedFor) {
+  EXPECT_EQ(SettingsFor({}).prepare.video_limit, 500) << "OpenDroneMap's default";
+  EXPECT_EQ(SettingsFor({}).prepare.video_size, 4000);
+  const coordinator::Settings settings = SettingsFor({"--video-limit", "120", "--video-resolution", "1920"});
+  EXPECT_EQ(settings.prepare.video_limit, 120);
+  EXPECT_EQ(settings.prepare.video_size, 1920);
+}
+
 TEST(MapOptions, AFastOrthophotoHasASurfaceOnlyWhereOneIsNeeded) {
   EXPECT_FALSE(WishesOf(RequestOf({"--fast-orthophoto", "--pc-ept", "--gltf", "--cog"})).Surface()) << "NodeODM adds these to every task";
   EXPECT_TRUE(WishesOf(RequestOf({"--fast-orthophoto", "--dtm"})).Surface());

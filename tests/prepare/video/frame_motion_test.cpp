@@ -21,7 +21,7 @@ double GroundAt(double x, double y) {
   static const std::vector<std::array<double, 4>> waves = [] {
     base::Random random(7);
     std::vector<std::array<double, 4>> made;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 32; ++i) {
       const double angle = random.Uniform(0.0, 2.0 * std::numbers::pi), length_px = random.Uniform(8.0, 60.0), phase = random.Uniform(0.0, 6.28);
       made.push_back({std::cos(angle) * 6.28 / length_px, std::sin(angle) * 6.28 / length_px, phase, random.Uniform(0.3, 1.0)});
     }
@@ -39,7 +39,7 @@ image::Image8 SeenWith(const FrameShift& shift) {
     for (int x = 0; x < kFrameWidth; ++x) {
       const double u = (x - 0.5 * (kFrameWidth - 1)) / kFrameWidth, v = (y - 0.5 * (kFrameHeight - 1)) / kFrameWidth;
       const double ground_x = kFrameWidth * (back.a * u - back.b * v + back.right), ground_y = kFrameWidth * (back.b * u + back.a * v + back.down);
-      *frame.At(x, y) = static_cast<uint8_t>(std::clamp(128.0 + 14.0 * GroundAt(ground_x, ground_y), 0.0, 255.0));
+      *frame.At(x, y) = static_cast<uint8_t>(std::clamp(128.0 + 19.0 * GroundAt(ground_x, ground_y), 0.0, 255.0));
     }
   }
   return frame;
@@ -69,7 +69,7 @@ TEST(FrameTracker, FollowsATurnThatGoesOn) {
   FrameShift sum;
   const FrameShift step{.a = std::cos(0.05), .b = std::sin(0.05), .right = 0.04};
   tracker.Track(SeenWith({}));
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 10; ++i) {
     sum = sum.Then(step);
     const std::optional<TrackedShift> tracked = tracker.Track(SeenWith(sum));
     ASSERT_TRUE(tracked) << i;

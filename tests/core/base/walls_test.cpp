@@ -24,11 +24,12 @@ const Arrows& AllowedIncludes() {
   static const Arrows allowed = [] {
     Arrows arrows = {
         {"app",
-         {"bench", "viewer", "odm", "coordinator", "simulate", "prepare", "masks", "partition", "worker", "merge", "products", "surface",
-          "buildings", "tour", "evaluate", "core"}},
+         {"bench", "viewer", "odm", "coordinator", "simulate", "prepare", "masks", "partition", "worker", "merge", "products", "surface", "buildings",
+          "tour", "evaluate", "core"}},
         // Of app only settings/, which says what options a person chose.
         {"python",
-         {"app", "coordinator", "simulate", "prepare", "masks", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate", "core"}},
+         {"app", "coordinator", "simulate", "prepare", "masks", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate",
+          "core"}},
         {"bench", {"coordinator", "simulate", "prepare", "partition", "worker", "merge", "products", "surface", "buildings", "evaluate", "core"}},
         {"viewer", {"coordinator", "prepare", "partition", "products", "surface", "buildings", "tour", "core"}},
         {"coordinator",

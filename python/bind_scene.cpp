@@ -85,26 +85,8 @@ py::dict CastRays(OpenScene& scene, const Doubles& origins, const Doubles& direc
                   const std::string& exposure, bool background) {
   const auto starts = Rows<3>(origins, "origins");
   const auto ways = Rows<3>(directions, "directions");
-  if (starts.size() != ways.size()) {
-    throw base::UsageError("there are " + std::to_string(starts.size()) + " origins and " + std::to_string(ways.size()) + " directions");
-  }
   const auto colors = std::make_shared<Colors>(starts.size());
-  Attend([&] {
-    std::vector<render::Ray> rays;
-    rays.reserve(starts.size());
-    for (size_t i = 0; i < starts.size(); ++i) {
-      if (!starts[i].allFinite() || !ways[i].allFinite() || !(ways[i].norm() > 0.0)) {
-        throw base::UsageError("ray " + std::to_string(i) + " has no finite origin, or no direction");
-      }
-      rays.push_back({.origin_enu = starts[i],
-                      .direction_enu = ways[i].normalized(),
-                      .t_near = near_m,
-                      .t_far = far_m,
-                      .pixel_pitch = static_cast<float>(pitch),
-                      .pixel_width = static_cast<float>(width_m)});
-    }
-    scene.Cast(rays, *colors, exposure, background);
-  });
+  Attend([&] { scene.Cast(starts, ways, {near_m, far_m, width_m, pitch}, exposure, background, *colors); });
   return ArraysOf(colors, {static_cast<py::ssize_t>(starts.size())});
 }
 
@@ -113,26 +95,8 @@ std::pair<py::array, py::array> QueryPlaces(OpenScene& scene, const Doubles& poi
   const Frame frame = FrameNamed(frame_name);
   const auto places = Rows<3>(points, "points");
   const auto ways = Rows<3>(directions, "directions");
-  if (ways.size() != 1 && ways.size() != places.size()) {
-    throw base::UsageError("there are " + std::to_string(places.size()) + " points and " + std::to_string(ways.size()) +
-                           " directions: give one direction, or one for each point");
-  }
   const auto found = std::make_shared<std::vector<scene::PointColor>>(places.size());
-  Attend([&] {
-    std::vector<Eigen::Vector3d> unit(ways.begin(), ways.end());
-    for (Eigen::Vector3d& way : unit) {
-      if (!way.allFinite() || !(way.norm() > 0.0)) throw base::UsageError("a direction is zero or not finite");
-      way.normalize();
-    }
-    const scene::PointOptions options{.footprint_m = footprint_m, .colors = colors};
-    if (frame == Frame::kEnu) {
-      scene.Query(places, unit, options, *found);
-      return;
-    }
-    std::vector<Eigen::Vector3d> enu(places.size());
-    scene.ToEnu(frame, places, enu);
-    scene.Query(enu, unit, options, *found);
-  });
+  Attend([&] { scene.Query(places, frame, ways, {.footprint_m = footprint_m, .colors = colors}, *found); });
   const py::capsule owner = Keep(found);
   const scene::PointColor empty;
   const scene::PointColor& first = found->empty() ? empty : found->front();

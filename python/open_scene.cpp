@@ -25,6 +25,16 @@ coordinator::RunOptions OptionsOf(int threads, double memory_gb) {
   return options;
 }
 
+void RequireAsMany(size_t n, size_t directions, const std::string& what) {
+  if (directions == n) return;
+  throw base::UsageError("there are " + std::to_string(n) + " " + what + " and " + std::to_string(directions) + " directions");
+}
+
+Eigen::Vector3d UnitOf(const Eigen::Vector3d& direction, size_t i) {
+  if (!direction.allFinite() || !(direction.norm() > 0.0)) throw base::UsageError("direction " + std::to_string(i) + " is zero or not finite");
+  return direction.normalized();
+}
+
 }  // namespace
 
 OpenScene::OpenScene(const std::filesystem::path& scene_h5, int threads, double memory_gb)
@@ -56,23 +66,46 @@ Rendered OpenScene::Render(const products::View& view, const std::string& exposu
   return rendered;
 }
 
-void OpenScene::Cast(std::span<const render::Ray> rays, std::span<render::RayColor> out, const std::string& exposure, bool background) {
+void OpenScene::Cast(std::span<const Eigen::Vector3d> origins, std::span<const Eigen::Vector3d> directions, const RayShape& shape,
+                     const std::string& exposure, bool background, std::span<render::RayColor> out) {
+  RequireAsMany(origins.size(), directions.size(), "origins");
   const auto lock = Enter();
   const scene::Appearance appearance = products::AppearanceOf(exposure, info());
-  for (size_t first = 0; first < rays.size(); first += kRaysAtATime) {
-    const size_t count = std::min(kRaysAtATime, rays.size() - first);
+  std::vector<render::Ray> rays;
+  for (size_t first = 0; first < origins.size(); first += kRaysAtATime) {
+    const size_t end = std::min(origins.size(), first + kRaysAtATime);
+    rays.clear();
+    for (size_t i = first; i < end; ++i) {
+      if (!origins[i].allFinite()) throw base::UsageError("the origin of ray " + std::to_string(i) + " is not finite");
+      rays.push_back({.origin_enu = origins[i],
+                      .direction_enu = UnitOf(directions[i], i),
+                      .t_near = shape.near_m,
+                      .t_far = shape.far_m,
+                      .pixel_pitch = static_cast<float>(shape.pitch),
+                      .pixel_width = static_cast<float>(shape.width_m)});
+    }
     if (background) {
-      session_.scene().RenderRaysOverBackground(rays.subspan(first, count), out.subspan(first, count), appearance, session_.threads());
+      session_.scene().RenderRaysOverBackground(rays, out.subspan(first, rays.size()), appearance, session_.threads());
     } else {
-      session_.scene().RenderRays(rays.subspan(first, count), out.subspan(first, count), appearance, session_.threads());
+      session_.scene().RenderRays(rays, out.subspan(first, rays.size()), appearance, session_.threads());
     }
   }
 }
 
-void OpenScene::Query(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector3d> directions, const scene::PointOptions& options,
-                      std::span<scene::PointColor> out) {
+void OpenScene::Query(std::span<const Eigen::Vector3d> points, Frame frame, std::span<const Eigen::Vector3d> directions,
+                      const scene::PointOptions& options, std::span<scene::PointColor> out) {
+  if (directions.size() != 1) RequireAsMany(points.size(), directions.size(), "points");
   const auto lock = Enter();
-  session_.scene().QueryPoints(points, directions, options, out, session_.threads());
+  std::vector<Eigen::Vector3d> unit;
+  unit.reserve(directions.size());
+  for (size_t i = 0; i < directions.size(); ++i) unit.push_back(UnitOf(directions[i], i));
+  std::vector<Eigen::Vector3d> enu;
+  if (frame != Frame::kEnu) {
+    enu.resize(points.size());
+    places_.ToEnu(frame, points, enu, session_.threads());
+    points = enu;
+  }
+  session_.scene().QueryPoints(points, unit, options, out, session_.threads());
 }
 
 void OpenScene::Heights(std::span<const Eigen::Vector2d> places, Frame frame, double width_m, std::span<double> out) {

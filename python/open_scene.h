@@ -27,6 +27,13 @@ struct Rendered {
   image::ImageF normals;           // empty when none were asked for
 };
 
+// What all rays of a question have in common (render::Ray).
+struct RayShape {
+  double near_m = 0.0, far_m = 1e30;
+  double width_m = 0.0;  // of the column
+  double pitch = 0.0;    // of the cone
+};
+
 class OpenScene {
  public:
   // threads: 0: all cores. memory_gb: for the fields in memory, 0: half of the machine's. Throws base::InputError, base::UsageError.
@@ -40,10 +47,11 @@ class OpenScene {
 
   // exposure: as products.exposure. normals: "depth", "density", "predicted"; empty: none.
   Rendered Render(const products::View& view, const std::string& exposure, const std::string& normals);
-  // One ray each. background: what lies behind the fields shows.
-  void Cast(std::span<const render::Ray> rays, std::span<render::RayColor> out, const std::string& exposure, bool background);
-  // Points in ENU; directions: one or as many.
-  void Query(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector3d> directions, const scene::PointOptions& options,
+  // Rays of any number; directions of any length. background: what lies behind the fields shows.
+  void Cast(std::span<const Eigen::Vector3d> origins, std::span<const Eigen::Vector3d> directions, const RayShape& shape, const std::string& exposure,
+            bool background, std::span<render::RayColor> out);
+  // Points of a frame; directions in ENU, of any length: one or as many.
+  void Query(std::span<const Eigen::Vector3d> points, Frame frame, std::span<const Eigen::Vector3d> directions, const scene::PointOptions& options,
              std::span<scene::PointColor> out);
   // Heights of the surface from above at places x, y of a frame, in this frame's heights: where half of the light of a column of this width has
   // passed. width_m: 0: ground sampling distance of the scene. NaN where there is no surface and outside the scene.

@@ -1,11 +1,14 @@
 """Runs every recipe of docs/python.md, in the folder that the page describes."""
 import os
+import pathlib
 import re
 import subprocess
 import sys
 import unittest
 
 from support import PRELOADED, PROGRAM, SOURCE, TINY, InFolder, harness, scene_project
+
+import skyquilt
 
 try:
     import matplotlib
@@ -40,7 +43,9 @@ class Recipes(InFolder):
         self.assertEqual(list(recipes), list(EXPECTED))
         for name, source in (("out", scene_project()), ("other", other_scene()), ("photos", harness.small_survey(PROGRAM))):
             (self.folder / name).symlink_to(source)
-        environment = dict(os.environ, MPLBACKEND="Agg", MPLCONFIGDIR=str(self.folder / "matplotlib"), LD_PRELOAD=PRELOADED)
+        # matplotlib takes seconds to look for fonts, once.
+        environment = dict(os.environ, MPLBACKEND="Agg", MPLCONFIGDIR=os.path.join(os.environ["SKYQUILT_TEST_SHARED"], "matplotlib"), LD_PRELOAD=PRELOADED,
+                           PYTHONPATH=str(pathlib.Path(skyquilt.__file__).resolve().parents[1]))
         for heading, code in recipes.items():
             if matplotlib is None and "matplotlib" in code:
                 print(f"'{heading}' was not run: matplotlib is not installed")
@@ -50,7 +55,8 @@ class Recipes(InFolder):
                 done = subprocess.run([sys.executable, "-c", code], cwd=self.folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                       text=True, timeout=600)
                 self.assertEqual(done.returncode, 0, done.stdout)
-                self.assertRegex(done.stdout, says)
+                if says:
+                    self.assertRegex(done.stdout, says)
                 for file in files:
                     self.assertGreater((self.folder / file).stat().st_size, 100, file)
 

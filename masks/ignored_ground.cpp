@@ -84,6 +84,7 @@ IgnoredGround::IgnoredGround(const survey::Survey& survey, const std::filesystem
                            "Give a camera model with points, or leave masks.ignore_ground empty");
   }
   std::vector<double> z;
+  z.reserve(points.size());
   for (const Eigen::Vector3d& point : points) z.push_back(point.z());
   const double ground_z = base::Median(std::move(z));
   Eigen::AlignedBox2d area = survey::SeenGround(survey, points, ground_z);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/base/errors.h"
 
@@ -48,7 +49,7 @@ image::Image8 LookPicture(const image::Image8& rgb, const MaskParts& parts, int 
       done->data[i] = 1;
       for (size_t c = 0; c < 3; ++c) {
         uint8_t& value = picture.data[3 * i + c];
-        value = static_cast<uint8_t>(value * (1.0 - kTint) + color[c] * kTint + 0.5);
+        value = static_cast<uint8_t>(std::lround(value * (1.0 - kTint) + color[c] * kTint));
       }
     }
   };

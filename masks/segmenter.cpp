@@ -29,6 +29,7 @@ std::vector<Stretch> Divide(int length, int size, int overlap) {
   if (length <= size) return {{0, 0, length}};
   const int step = size - overlap, n = (length - overlap + step - 1) / step;
   std::vector<Stretch> stretches;
+  stretches.reserve(static_cast<size_t>(n));
   for (int i = 0; i < n; ++i) stretches.push_back({static_cast<int>(static_cast<int64_t>(length - size) * i / (n - 1)), 0, length});
   for (size_t i = 1; i < stretches.size(); ++i) {
     const int border = (stretches[i].begin + stretches[i - 1].begin + size) / 2;

@@ -28,7 +28,7 @@ constexpr double kReportPhotos = 3.0;       // pictures of a photo written per s
 constexpr double kBuildingCells = 0.2e6;    // cells of the surface per second and thread
 constexpr double kMeshScores = 1.0;         // comparing the mesh with a photo, too: as long as comparing the field
 constexpr double kTruthScores_s = 6.0;
-// Seconds and threads per photo of stage "masks". The first is that of a small network (docs/input.md); networks differ by far more than machines.
+// Seconds per photo and thread of stage "masks", guessed: networks differ by far more than machines.
 constexpr double kNetworkMask_s = 1.0, kGroundMask_s = 0.4;
 constexpr double kMostCorrection = 6.0;
 constexpr double kOwnShare = 0.7, kOtherShare = 0.3;  // of the logarithm of a stage's ratio

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <string>
 
 #include "core/base/errors.h"
 #include "core/base/memory_map.h"
@@ -66,6 +67,20 @@ class HeifPhoto {
     Image8 image(width, height, 3);
     for (int y = 0; y < height; ++y) std::copy_n(rows + static_cast<ptrdiff_t>(stride) * y, static_cast<size_t>(3) * width, image.At(0, y));
     return image;
+  }
+
+  // From the TIFF header on; empty: none.
+  std::string Exif() const {
+    heif_item_id block = 0;
+    if (heif_image_handle_get_list_of_metadata_block_IDs(handle_.get(), "Exif", &block, 1) < 1) return {};
+    std::string exif(heif_image_handle_get_metadata_size(handle_.get(), block), '\0');
+    Check(heif_image_handle_get_metadata(handle_.get(), block, exif.data()));
+    // Four bytes say how many more come before the header.
+    constexpr size_t kOffsetBytes = 4;
+    if (exif.size() < kOffsetBytes) return {};
+    size_t offset = 0;
+    for (size_t i = 0; i < kOffsetBytes; ++i) offset = offset << 8U | static_cast<uint8_t>(exif[i]);
+    return offset < exif.size() - kOffsetBytes ? exif.substr(kOffsetBytes + offset) : std::string();
   }
 
   int width = 0, height = 0;  // pixels, as stored
@@ -161,6 +176,10 @@ void ReadDevelopedSize(const fs::path& file, int* width, int* height) {
   const HeifPhoto photo(file);
   *width = photo.width;
   *height = photo.height;
+}
+
+std::string ExifOfHeif(const fs::path& file) {
+  return IsHeif(file.filename().string()) ? HeifPhoto(file).Exif() : std::string();
 }
 
 Image8 DevelopPhoto(const fs::path& file) {

@@ -15,6 +15,9 @@ bool NeedsDeveloping(const std::string& file_name);
 // As stored: neither EXIF's orientation nor HEIF's rotation is applied. Throws base::InputError.
 void ReadDevelopedSize(const std::filesystem::path& file, int* width, int* height);
 
+// The EXIF block of a HEIC file, from its TIFF header on; empty for other files, and where there is none. Throws base::InputError.
+std::string ExifOfHeif(const std::filesystem::path& file);
+
 // RGB. HEIC: the main picture; depth maps, thumbnails and other pictures of the file are ignored, more than 8 bits are rounded. Raw: the camera's
 // white balance, sRGB's primaries and curve, white where the sensor is full, so that a value is the same light times the exposure in all photos. Lens
 // corrections that a DNG asks for are left out: they are the lens model's. Throws base::InputError for what is damaged or cannot be read.

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/base/errors.h"
+#include "core/image/develop.h"
 #include "core/survey/dji_maker_note.h"
 #include "core/survey/exiv2_guard.h"
 #include "core/survey/orientation.h"
@@ -274,7 +275,12 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
   try {
     const auto image = Exiv2::ImageFactory::open(file.string());
     image->readMetadata();
-    const Exiv2::ExifData& exif = image->exifData();
+    Exiv2::ExifData& exif = image->exifData();
+    if (exif.empty()) {
+      // Exiv2 does not find that of every writer of HEIC.
+      const std::string block = image::ExifOfHeif(file);
+      if (!block.empty()) Exiv2::ExifParser::decode(exif, reinterpret_cast<const Exiv2::byte*>(block.data()), static_cast<uint32_t>(block.size()));
+    }
     const Exiv2::XmpData& xmp = image->xmpData();
     PhotoTags tags;
     tags.relative_altitude_m = XmpNumber(xmp, "RelativeAltitude");

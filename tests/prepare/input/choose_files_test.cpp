@@ -127,7 +127,8 @@ RC_GTEST_PROP(ChooseFiles, PatternsTakeAllThatMatchesAndNothingElse, ()) {
   const std::vector<MadeFile> files = MakeFiles(random);
   const std::vector<std::string> patterns = {random.Below(2) == 0 ? "*.jpg" : "odm/**", "DJI_*_T.*"};
   for (const InputFile& row : ChooseOf(files, patterns)) {
-    const bool can_be = GroupOf(row.name) == FileGroup::kPicture && row.kind != FileKind::kMask && row.kind != FileKind::kSystem;
+    const bool picture = GroupOf(row.name) == FileGroup::kPicture || image::NeedsDeveloping(row.name);
+    const bool can_be = picture && row.kind != FileKind::kMask && row.kind != FileKind::kSystem;
     const bool expected = can_be && MatchesAny(patterns, row.name);
     RC_ASSERT(row.Taken() == expected);
   }

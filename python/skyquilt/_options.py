@@ -47,7 +47,7 @@ def _bars(value: Any) -> str:
     return value if isinstance(value, str) else "|".join(_text(one) for one in value)
 
 
-# What the flags of the same names of the commands set. 
+# What the flags of the same names of the commands set.
 _TRAINING = {
     "time_budget": (("run.time_budget_s",), _seconds),
     "steps": (("train.steps",), _text),

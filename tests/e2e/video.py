@@ -17,7 +17,8 @@ def survey_of(project):
 
 
 def frames_of(project):
-    return sorted((project / "survey" / "frames").glob("*.jpg"))
+    """Without the hidden file that is being written."""
+    return sorted(frame for frame in (project / "survey" / "frames").glob("*.jpg") if not frame.name.startswith("."))
 
 
 def rows_of(project):
@@ -82,6 +83,7 @@ def check_kill(skyquilt, survey, folder):
         expect(all(is_whole(frame) for frame in frames_of(killed)), "a kill left half a frame")
         expect(not (killed / "survey" / "frames.csv").exists() or len(frames_of(killed)) == len(whole), "the table is there before the frames")
     skyquilt.call(*dense, "-o", killed, status=3)
+    expect(not list((killed / "survey" / "frames").glob(".*")), "an unfinished frame is left")
     expect({frame.name: frame.read_bytes() for frame in frames_of(killed)} == whole, "frames after kills differ from those of one go")
     skyquilt.call(*dense, "-o", killed, status=3, says="already taken")
 
@@ -113,7 +115,7 @@ def test(skyquilt, folder):
         print("skipped: no ffmpeg")
         sys.exit(77)
     survey = shared(skyquilt, "filmed_line", lambda made: skyquilt.call(
-        "simulate", "hamlet", "-o", made, "--video", "--image-width", "320", "--set", "simulate.single_line=true"))
+        "simulate", "hamlet", "-o", made, "--video", "--image-width", "240", "--set", "simulate.single_line=true"))
     check_flight(skyquilt, survey, folder)
     check_kill(skyquilt, survey, folder)
     check_faults(skyquilt, survey, folder)

@@ -17,7 +17,8 @@ def survey_of(project):
 
 
 def frames_of(project):
-    return sorted((project / "survey" / "frames").glob("*.jpg"))
+    """Without the hidden file that is being written."""
+    return sorted(frame for frame in (project / "survey" / "frames").glob("*.jpg") if not frame.name.startswith("."))
 
 
 def rows_of(project):
@@ -82,6 +83,7 @@ def check_kill(skyquilt, survey, folder):
         expect(all(is_whole(frame) for frame in frames_of(killed)), "a kill left half a frame")
         expect(not (killed / "survey" / "frames.csv").exists() or len(frames_of(killed)) == len(whole), "the table is there before the frames")
     skyquilt.call(*dense, "-o", killed, status=3)
+    expect(not list((killed / "survey" / "frames").glob(".*")), "an unfinished frame is left")
     expect({frame.name: frame.read_bytes() for frame in frames_of(killed)} == whole, "frames after kills differ from those of one go")
     skyquilt.call(*dense, "-o", killed, status=3, says="already taken")
 
@@ -89,22 +91,22 @@ def check_kill(skyquilt, survey, folder):
 def check_faults(skyquilt, survey, folder):
     video = survey / "video" / "flight.mp4"
     data = video.read_bytes()
-    (folder / "half").mkdir()
-    half = folder / "half" / "flight.mp4"
-    half.write_bytes(data[:len(data) // 2])
-    shutil.copy(survey / "video" / "flight.SRT", folder / "half")
-    skyquilt.call("prepare", half, "-o", folder / "of_half", *NO_POSES, status=3, says="cut off or damaged")
-    n_half = len(frames_of(folder / "of_half"))
-    skyquilt.call("prepare", video, "-o", folder / "limited", "--video-limit", "5", *NO_POSES, status=3, says="Raise prepare.video_limit")
-    expect(3 <= len(frames_of(folder / "limited")) <= 5, f"{len(frames_of(folder / 'limited'))} frames in spite of the limit")
-    expect(n_half >= 3, f"{n_half} frames of half a video")
-    half.write_bytes(b"\0" * 5000)
-    skyquilt.call("prepare", half, "-o", folder / "of_nothing", status=3, says=["flight.mp4", "cannot be read as a video"])
+    (folder / "cut").mkdir()
+    cut = folder / "cut" / "flight.mp4"
+    cut.write_bytes(data[:2 * len(data) // 3])
+    shutil.copy(survey / "video" / "flight.SRT", folder / "cut")
+    skyquilt.call("prepare", cut, "-o", folder / "of_cut", *NO_POSES, status=3, says="cut off or damaged")
+    n_cut = len(frames_of(folder / "of_cut"))
+    skyquilt.call("prepare", video, "-o", folder / "limited", "--video-limit", "4", *NO_POSES, status=3, says="Raise prepare.video_limit")
+    expect(3 <= len(frames_of(folder / "limited")) <= 4, f"{len(frames_of(folder / 'limited'))} frames in spite of the limit")
+    expect(n_cut >= 3, f"{n_cut} frames of two thirds of a video")
+    cut.write_bytes(b"\0" * 5000)
+    skyquilt.call("prepare", cut, "-o", folder / "of_nothing", status=3, says=["flight.mp4", "cannot be read as a video"])
     path, skyquilt.environment["PATH"] = skyquilt.environment["PATH"], os.fspath(folder)
     skyquilt.call("prepare", video, "-o", folder / "without", status=3, says="apt install ffmpeg")
     skyquilt.environment["PATH"] = path
     expect(not (folder / "without" / "survey" / "frames").exists(), "frames without ffmpeg")
-    skyquilt.call("prepare", video, folder / "half", "-o", folder / "both", status=2, says="not both")
+    skyquilt.call("prepare", video, folder / "cut", "-o", folder / "both", status=2, says="not both")
     skyquilt.call("prepare", folder / "no.mp4", "-o", folder / "none", status=3, says="no such")
 
 
@@ -113,7 +115,7 @@ def test(skyquilt, folder):
         print("skipped: no ffmpeg")
         sys.exit(77)
     survey = shared(skyquilt, "filmed_line", lambda made: skyquilt.call(
-        "simulate", "hamlet", "-o", made, "--video", "--image-width", "320", "--set", "simulate.single_line=true"))
+        "simulate", "hamlet", "-o", made, "--video", "--image-width", "240", "--set", "simulate.single_line=true"))
     check_flight(skyquilt, survey, folder)
     check_kill(skyquilt, survey, folder)
     check_faults(skyquilt, survey, folder)

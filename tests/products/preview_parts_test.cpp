@@ -11,6 +11,7 @@
 #include "core/geo/enu_frame.h"
 #include "core/gis/geotiff.h"
 #include "core/scene/point_heights.h"
+#include "core/survey/seen_ground.h"
 #include "products/field_preview.h"
 #include "products/map_products.h"
 #include "products/photo_map/overlap_gains.h"

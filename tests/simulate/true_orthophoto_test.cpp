@@ -74,7 +74,7 @@ class TrueOrthophoto : public InTemporaryFolder {
     const geo::Rigid3d pose = PoseFromGimbal({at.x(), at.y(), GroundAt(at) + kHigh_m}, 0.0, -90.0, 0.0);
     return Develop(PhotoRenderer(*world_, camera, 4, true).Render(pose, moving, *threads_).rgb_linear, {});
   }
-  static MovingScene NothingMoves() { return {{}, {}, raytrace::TracedScene({}, {})}; }
+  static MovingScene NothingMoves() { return {{}, {}, {}, raytrace::TracedScene({}, {})}; }
   // Largest difference of red, green and blue.
   static double Difference(const float* cell, const uint8_t* pixel) {
     double largest = 0.0;

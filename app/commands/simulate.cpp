@@ -29,7 +29,7 @@ void AddSimulate(CLI::App& app, CommandState& state) {
       [overrides] {
         overrides->push_back({"simulate.video_fps", "5"});
       },
-      "also film the flight, with 5 frames per second, into video/flight.mp4, with subtitles as drones write them [simulate.video_fps]");
+      "also film the flight, with 5 frames per second, into video/flight.mp4, with subtitles as drones write them; other rates: simulate.video_fps");
   command->add_flag("--restart", flags->restart, "remove an earlier survey in the folder first");
   command->footer(
       "Examples:\n"

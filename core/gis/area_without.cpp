@@ -45,8 +45,8 @@ void WriteAreaWithout(const std::optional<Boundary>& area, const MapExtent& all,
   if (!geometry) internal::FailWriting(file, "cannot be written");
   const std::string crs =
       georeferenced ? R"("crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::)" + std::to_string(zone.Epsg()) + "\"}}," : "";
-  base::WriteFileAtomically(file, R"({"type":"FeatureCollection",)" + crs + R"("features":[{"type":"Feature","properties":{},"geometry":)" +
-                                      geometry.get() + "}]}\n");
+  base::WriteFileAtomically(
+      file, R"({"type":"FeatureCollection",)" + crs + R"("features":[{"type":"Feature","properties":{},"geometry":)" + geometry.get() + "}]}\n");
 }
 
 }  // namespace skyquilt::gis

@@ -9,8 +9,8 @@
 
 namespace skyquilt::gis {
 
-// Writes polygons as GeoJSON for Boundary::Read: `area`, or without one the rectangle `all`, less what is inside `holes`. All in map coordinates; zone:
-// theirs, without geo-reference local metres. Throws base::InputError when nothing is left, or the file cannot be written.
+// Writes polygons as GeoJSON for Boundary::Read: `area`, or without one the rectangle `all`, less what is inside `holes`. All in map coordinates;
+// zone: theirs, without geo-reference local metres. Throws base::InputError when nothing is left, or the file cannot be written.
 void WriteAreaWithout(const std::optional<Boundary>& area, const MapExtent& all, const Boundary& holes, bool georeferenced, const geo::UtmZone& zone,
                       const std::filesystem::path& file);
 

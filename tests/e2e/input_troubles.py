@@ -117,7 +117,7 @@ def test(skyquilt, folder):
     expect("darktable-cli" in text, f"there is no advice how to convert the photos:\n{text}")
     for name in ("IMG_1.HEIC", "IMG_2.DNG", "IMG_3.heic"):
         (raw / name).write_bytes(b"damaged")
-    text = skyquilt.call("prepare", raw, "-o", folder / "raw_out", status=3)
+    text = skyquilt.call("prepare", raw, "-o", folder / "raw_out_2", status=3)
     expect("IMG_1.HEIC" in text and "IMG_2.DNG" in text, f"damaged photos are not named:\n{text}")
 
     # A table of positions as spreadsheets write them, with axes exchanged.

@@ -225,6 +225,15 @@ bool AllAreThere(const nlohmann::ordered_json& plan, const fs::path& folder) {
   return true;
 }
 
+// Hidden files that a killed process has left.
+void RemoveUnfinished(const fs::path& frames) {
+  std::vector<fs::path> unfinished;
+  for (const fs::directory_entry& entry : fs::directory_iterator(frames)) {
+    if (entry.path().filename().string().starts_with('.')) unfinished.push_back(entry.path());
+  }
+  for (const fs::path& file : unfinished) fs::remove(file);
+}
+
 }  // namespace
 
 fs::path FramesFolder(const fs::path& folder) {
@@ -270,6 +279,7 @@ void ProvideFrames(const std::vector<fs::path>& videos, const VideoOptions& opti
     base::WriteFileAtomically(folder / kPlanName, base::JsonText(plan, 1) + "\n");
   }
   base::RequireWritableFolder(FramesFolder(folder));
+  RemoveUnfinished(FramesFolder(folder));
   std::vector<std::vector<FrameToWrite>> frames;
   std::set<std::string> missing;
   size_t n_frames = 0;

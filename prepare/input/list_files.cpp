@@ -58,7 +58,7 @@ std::string AdviceForUnread(const std::vector<InputFile>& files) {
         "Write patterns for paths below that folder, such as *.JPG or flight1/*; upper and lower case differ before the extension");
   }
   const std::string advice = AdviceForUnread(files);
-  throw base::InputError(root, "has no photos (.jpg, .jpeg, .png, .tif, .tiff)" + (others.empty() ? "" : "; left out: " + others),
+  throw base::InputError(root, "has no photos (.jpg, .png, .tif, .heic, .dng or other raw files)" + (others.empty() ? "" : "; left out: " + others),
                          !advice.empty()  ? advice
                          : others.empty() ? "Give the folder that holds the photos"
                                           : "Give the folder that holds the photos, or choose pictures with prepare.photos, for instance '*.TIF'");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "core/base/cancel.h"
@@ -61,17 +62,6 @@ void RequireFolderOf(const fs::path& file) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error) throw base::InputError(file.parent_path(), "cannot be made: " + error.message(), "Check the permissions of the project folder");
-}
-
-survey::MadeMask RecordFromJson(const json& value) {
-  return {.photo = value.at("photo").get<std::string>(),
-          .file = value.at("file").get<std::string>(),
-          .look = value.at("look").get<std::string>(),
-          .pixels = value.at("pixels").get<int64_t>(),
-          .ignored = value.at("ignored").get<int64_t>(),
-          .given = value.at("given").get<int64_t>(),
-          .network = value.at("network").get<int64_t>(),
-          .ground = value.at("ground").get<int64_t>()};
 }
 
 // Whether the files of a photo were made of the same, and are all there.
@@ -187,19 +177,21 @@ void MaskRunner::MaskPhoto(size_t index, size_t thread) {
     image::SaveJpeg(LookPicture(image::LoadReducedRgb8(picture, kLookWidth), parts, kLookWidth), folder / made.look, kLookQuality);
   }
   // Last: what it names is there.
-  const json record = {{"key", key},          {"photo", made.photo},     {"file", made.file},
-                       {"look", made.look},   {"pixels", made.pixels},   {"ignored", made.ignored},
-                       {"given", made.given}, {"network", made.network}, {"ground", made.ground}};
+  nlohmann::ordered_json record = survey::ToJson(made);
+  record["key"] = key;
   RequireFolderOf(folder / RecordName(photo.name));
   base::WriteFileAtomically(folder / RecordName(photo.name), base::JsonText(record) + "\n");
 }
 
 survey::MadeMask ReadMadeMask(const fs::path& survey_folder, const std::string& photo) {
   const fs::path file = survey::MadeMasksFolder(survey_folder) / RecordName(photo);
+  constexpr const char* kRemove = "Remove it and run the same command again";
   try {
-    return RecordFromJson(base::ParseJson(base::ReadFile(file)));
+    return survey::MadeMaskFromJson(base::ParseJson(base::ReadFile(file)));
   } catch (const json::exception& error) {
-    throw base::InputError(file, std::string("is damaged (") + error.what() + ")", "Remove it and run the same command again");
+    throw base::InputError(file, std::string("is damaged (") + error.what() + ")", kRemove);
+  } catch (const std::invalid_argument& error) {
+    throw base::InputError(file, error.what(), kRemove);
   }
 }
 

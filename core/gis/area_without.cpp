@@ -35,7 +35,7 @@ void WriteAreaWithout(const std::optional<Boundary>& area, const MapExtent& all,
                       const std::filesystem::path& file) {
   const internal::QuietErrors quiet;
   const Geometry whole = area ? PolygonsOf(area->rings()) : RectangleOf(all), left_out = PolygonsOf(holes.rings());
-  // Rings that were drawn across themselves have no difference; widening by nothing mends them.
+  // Rings that were drawn across themselves have no difference; widening by nothing gives valid ones of the same area.
   const Geometry mended_whole(whole->Buffer(0.0)), mended_holes(left_out->Buffer(0.0));
   const Geometry rest(mended_whole && mended_holes ? mended_whole->Difference(mended_holes.get()) : nullptr);
   if (!rest || rest->IsEmpty()) {

@@ -38,7 +38,14 @@ Rings RingsFromJson(const nlohmann::json& list) {
   return rings;
 }
 
-MadeMask MaskFromJson(const nlohmann::json& value) {
+}  // namespace
+
+nlohmann::ordered_json ToJson(const MadeMask& mask) {
+  return {{"photo", mask.photo},     {"file", mask.file},   {"look", mask.look},       {"pixels", mask.pixels},
+          {"ignored", mask.ignored}, {"given", mask.given}, {"network", mask.network}, {"ground", mask.ground}};
+}
+
+MadeMask MadeMaskFromJson(const nlohmann::json& value) {
   MadeMask mask{.photo = value.at("photo").get<std::string>(),
                 .file = value.at("file").get<std::string>(),
                 .look = value.at("look").get<std::string>(),
@@ -52,8 +59,6 @@ MadeMask MaskFromJson(const nlohmann::json& value) {
   }
   return mask;
 }
-
-}  // namespace
 
 std::filesystem::path MadeMasksFolder(const std::filesystem::path& survey_folder) {
   return survey_folder / "made_masks";
@@ -71,16 +76,7 @@ void SaveMadeMasks(const MadeMasks& masks, const std::filesystem::path& survey_f
                                   {"ground", masks.ground},
                                   {"ground_rings", RingsToJson(masks.ground_rings)},
                                   {"photos", nlohmann::ordered_json::array()}};
-  for (const MadeMask& mask : masks.photos) {
-    value["photos"].push_back({{"photo", mask.photo},
-                               {"file", mask.file},
-                               {"look", mask.look},
-                               {"pixels", mask.pixels},
-                               {"ignored", mask.ignored},
-                               {"given", mask.given},
-                               {"network", mask.network},
-                               {"ground", mask.ground}});
-  }
+  for (const MadeMask& mask : masks.photos) value["photos"].push_back(ToJson(mask));
   base::WriteFileAtomically(MadeMasksFile(survey_folder), base::JsonText(value, 1) + "\n");
 }
 
@@ -98,7 +94,7 @@ std::optional<MadeMasks> LoadMadeMasks(const std::filesystem::path& survey_folde
                     .ground = value.at("ground").get<std::string>(),
                     .ground_rings = RingsFromJson(value.at("ground_rings")),
                     .photos = {}};
-    for (const nlohmann::json& photo : value.at("photos")) masks.photos.push_back(MaskFromJson(photo));
+    for (const nlohmann::json& photo : value.at("photos")) masks.photos.push_back(MadeMaskFromJson(photo));
     return masks;
   } catch (const nlohmann::json::exception& error) {
     throw base::InputError(file, std::string("is damaged (") + error.what() + ")", fix);

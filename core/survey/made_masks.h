@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,10 @@ struct MadeMasks {
   std::vector<std::vector<Eigen::Vector2d>> ground_rings = {};  // closed rings around ignored ground, x and y in ENU metres; even-odd rule
   std::vector<MadeMask> photos = {};                            // in the order of the survey
 };
+
+nlohmann::ordered_json ToJson(const MadeMask& mask);
+// Throws nlohmann::json::exception for a value of another form, std::invalid_argument for counts that are impossible.
+MadeMask MadeMaskFromJson(const nlohmann::json& value);
 
 std::filesystem::path MadeMasksFolder(const std::filesystem::path& survey_folder);
 std::filesystem::path MadeMasksFile(const std::filesystem::path& survey_folder);

@@ -167,6 +167,7 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
   const PriorOptions prior_options = loaded.luminance.On() ? PriorOptions::Off() : job.priors;
   render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false, prior_options);
   RaySource source(*job.survey, *job.pixels, loaded.response);
+  source.SetRejected(job.rejected);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
   const PointRanges ranges(*job.survey, source, block.photos, threads);
   ranges.GiveSky(source, threads);

@@ -20,6 +20,7 @@
 #include "worker/fall_guard.h"
 #include "worker/phase_times.h"
 #include "worker/prior_options.h"
+#include "worker/robust/rejected_pixels.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::worker {
@@ -66,13 +67,14 @@ struct TrainJob {
   // Brightness of the photos: from tags, and what to learn beyond them. Only the context learns; blocks use the response stored with the context.
   brightness::Response response;
   brightness::LearnerOptions learn;
-  brightness::Luminance luminance;   // for the context; blocks use the one stored with it
-  TrainOptions options;              // with the budget of this field
-  PriorOptions priors;               // of blocks; the context has none
-  int min_views = 2;                 // number of training photos that must see a place for the field to learn it
-  int attempt = 0;                   // 0, then one more for every retry
-  double learning_rate_scale = 1.0;  // factor on the learning rate; below 1 in retries
-  std::string config_hash;           // stored in the checkpoint; one with another hash is refused
+  brightness::Luminance luminance;           // for the context; blocks use the one stored with it
+  TrainOptions options;                      // with the budget of this field
+  PriorOptions priors;                       // of blocks; the context has none
+  const RejectedPixels* rejected = nullptr;  // that blocks do not learn from; null: none
+  int min_views = 2;                         // number of training photos that must see a place for the field to learn it
+  int attempt = 0;                           // 0, then one more for every retry
+  double learning_rate_scale = 1.0;          // factor on the learning rate; below 1 in retries
+  std::string config_hash;                   // stored in the checkpoint; one with another hash is refused
   uint64_t seed = 1;
   std::filesystem::path checkpoint;   // context.h5 or block_<name>.h5
   std::filesystem::path diagnostics;  // CSV (train_diagnostics.h); empty: none

@@ -212,6 +212,8 @@ void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
                   "time between two checkpoints of a field, such as 20s or 5min");
   AddMemoryFlag(command, overrides);
   AddOptionFlag(command, overrides, "--seed", "run.seed", "seed of the random numbers of training");
+  AddOptionFlag(command, overrides, "--movers", "robust.movers",
+                "do not learn from what moved between photos, found by comparing them: off, on or auto");
   AddOptionFlag(command, overrides, "--brightness", "brightness.correction",
                 "correction of exposure differences between photos: none, or any of exif,gain,vignette,luminance");
 }

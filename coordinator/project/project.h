@@ -17,6 +17,8 @@ struct Project {
   std::filesystem::path BlockCheckpoint(const std::string& block_name) const { return CheckpointFolder() / ("block_" + block_name + ".h5"); }
   std::filesystem::path TrainLog(const std::string& field_name) const { return CheckpointFolder() / (field_name + ".log.csv"); }
   std::filesystem::path DiagnosticsLog(const std::string& field_name) const { return CheckpointFolder() / (field_name + ".diagnostics.csv"); }
+  std::filesystem::path RejectedPixels() const { return CheckpointFolder() / "rejected_pixels.bin"; }
+  std::filesystem::path MoversFolder() const { return folder / "movers"; }
   std::filesystem::path TrainReport() const { return folder / "train.json"; }
   std::filesystem::path PixelCacheFile() const { return folder / "cache" / "pixels.bin"; }
   std::filesystem::path SceneFile() const { return folder / "scene.h5"; }

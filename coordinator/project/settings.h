@@ -21,6 +21,7 @@
 #include "surface/surface_options.h"
 #include "tour/export/tour_options.h"
 #include "worker/prior_options.h"
+#include "worker/robust/robust_options.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::coordinator {
@@ -35,6 +36,7 @@ struct Settings {
   worker::TrainOptions context;
   worker::TrainOptions train;
   worker::PriorOptions priors;
+  worker::RobustOptions robust;
   merge::MergeOptions merge;
   products::ProductOptions products;
   surface::SurfaceOptions surface;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
+#include <optional>
 
 #include "coordinator/scheduler/plan_brightness.h"
 #include "coordinator/scheduler/training_log.h"
@@ -120,7 +122,9 @@ bool MustStream(const image::PixelCache& pixels, const survey::Survey& survey, c
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
                               const Settings& settings, const Project& project, const std::string& config_hash, base::ThreadPool& threads) {
   const BrightnessPlan plan = PlanBrightness(survey, settings.brightness);
-  return [&survey, &blocks, &pixels, &settings, project, config_hash, plan, &threads](const FieldJob& job, const worker::Reporter& report) {
+  // Read when the first block is trained: they are found after the context.
+  const auto rejected = std::make_shared<std::optional<worker::RejectedPixels>>();
+  return [&survey, &blocks, &pixels, &settings, project, config_hash, plan, rejected, &threads](const FieldJob& job, const worker::Reporter& report) {
     worker::TrainJob train;
     train.survey = &survey;
     train.pixels = &pixels;
@@ -149,6 +153,10 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
       }
       train.checkpoint = project.ContextCheckpoint();
       return worker::TrainContext(train, SpecOfSurvey(blocks, survey, project.BlocksFile(), settings), threads, both);
+    }
+    if (settings.robust.Any()) {
+      if (!*rejected) *rejected = worker::RejectedPixels::Load(config_hash, project.RejectedPixels());
+      train.rejected = &**rejected;
     }
     const partition::Block& block = blocks.blocks[static_cast<size_t>(job.block)];
     train.checkpoint = project.BlockCheckpoint(block.name);

@@ -13,6 +13,7 @@
 #include "coordinator/scheduler/coordinate.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/scheduler/plan_brightness.h"
+#include "coordinator/scheduler/reject_pixels.h"
 #include "coordinator/scheduler/train_ledger.h"
 #include "coordinator/scheduler/train_progress.h"
 #include "core/base/amounts.h"
@@ -83,6 +84,7 @@ class Training {
     }
     RequireMemory(*input_.blocks, *input_.survey, settings_, threads, per_host);
     TrainContext(trainer, all_threads);
+    ProvideRejectedPixels(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
     ShowContext(pool);
     TrainBlocks(trainer, threads);
     ledger_.SetSpent(Now(), true);

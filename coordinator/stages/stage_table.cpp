@@ -283,11 +283,14 @@ std::vector<Stage> MakeTable() {
        .required = {{SurveyFile, "prepare"}, {BlocksFile, "partition"}},
        .inputs =
            [](const Pipeline& pipeline) {
-             return FlatOptions{{"survey", MaskedSurveyIdentity(pipeline)}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
+             FlatOptions inputs{{"survey", MaskedSurveyIdentity(pipeline)}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
+             // Left out where they change nothing, so that trainings of older programs stay valid.
+             if (pipeline.settings.robust.Any()) inputs.merge(Select(pipeline.settings.Flat(), {"robust."}));
+             return inputs;
            },
        .outputs =
            [](const Project& p) {
-             return Paths{p.CheckpointFolder(), p.TrainReport(), p.PixelCacheFile().parent_path(), p.TrainLedgerFile()};
+             return Paths{p.CheckpointFolder(), p.MoversFolder(), p.TrainReport(), p.PixelCacheFile().parent_path(), p.TrainLedgerFile()};
            },
        .completion_files = TrainProof,
        .body = TrainBody,

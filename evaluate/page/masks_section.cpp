@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
@@ -27,66 +29,120 @@ std::string MaskRow(const std::string& what, const survey::MadeMasks& masks, int
   return "<tr>" + TextCell(what) + CountCell(photos) + CountCell(pixels) + PercentCell(ShareOf(pixels, all), 2) + "</tr>";
 }
 
-}  // namespace
+// A photo that may be shown; look: path of its picture.
+struct Candidate {
+  std::string photo;
+  std::filesystem::path look;
+  double ignored = 0.0;
+};
 
-MasksReport CopyMasks(const std::filesystem::path& survey_folder, const std::filesystem::path& report_folder) {
-  MasksReport report;
-  try {
-    const std::optional<survey::MadeMasks> masks = survey::LoadMadeMasks(survey_folder);
-    if (!masks) return report;
-    report.masks = *masks;
-  } catch (const base::InputError& error) {
-    base::LogWarning("the report is without masks: {}", error.what());
-    return report;
-  }
-  std::vector<const survey::MadeMask*> shown;
-  for (const survey::MadeMask& mask : report.masks.photos) {
-    if (!mask.look.empty()) shown.push_back(&mask);
-  }
-  std::stable_sort(shown.begin(), shown.end(), [](const survey::MadeMask* a, const survey::MadeMask* b) {
-    return ShareOf(a->ignored, a->pixels) > ShareOf(b->ignored, b->pixels);
-  });
+// Copies pictures of some of them to images/<name>_<i>.jpg.
+std::vector<MaskPicture> CopyPictures(std::vector<Candidate> shown, const std::string& name, const std::filesystem::path& report_folder) {
+  std::ranges::stable_sort(shown, [](const Candidate& a, const Candidate& b) { return a.ignored > b.ignored; });
   const size_t n = std::min(kMaskPictures, shown.size());
   std::error_code ignored;
   std::filesystem::create_directories(report_folder / "images", ignored);
+  std::vector<MaskPicture> pictures;
   for (size_t i = 0; i < n; ++i) {
-    const survey::MadeMask& mask = *shown[n == 1 ? 0 : i * (shown.size() - 1) / (n - 1)];
-    MaskPicture picture{.photo = mask.photo, .image = fmt::format("images/mask_{}.jpg", i), .ignored = ShareOf(mask.ignored, mask.pixels)};
+    const Candidate& one = shown[n == 1 ? 0 : i * (shown.size() - 1) / (n - 1)];
+    MaskPicture picture{.photo = one.photo, .image = fmt::format("images/{}_{}.jpg", name, i), .ignored = one.ignored};
     try {
-      const std::filesystem::path look = survey::MadeMasksFolder(survey_folder) / mask.look;
-      image::ReadImageSize(look, &picture.width_px, &picture.height_px);
-      std::filesystem::copy_file(look, report_folder / picture.image, std::filesystem::copy_options::overwrite_existing);
-      report.pictures.push_back(std::move(picture));
+      image::ReadImageSize(one.look, &picture.width_px, &picture.height_px);
+      std::filesystem::copy_file(one.look, report_folder / picture.image, std::filesystem::copy_options::overwrite_existing);
+      pictures.push_back(std::move(picture));
     } catch (const std::exception& error) {
-      base::LogWarning("the report is without the mask of {}: {}", mask.photo, error.what());
+      base::LogWarning("the report is without what is ignored in {}: {}", one.photo, error.what());
     }
   }
-  return report;
+  return pictures;
 }
 
-std::string MasksSection(const MasksReport& report) {
+// Nothing where there is none or it is damaged.
+template <typename Table>
+std::optional<Table> ReadTable(std::optional<Table> (*load)(const std::filesystem::path&), const std::filesystem::path& folder) {
+  try {
+    return load(folder);
+  } catch (const base::InputError& error) {
+    base::LogWarning("the report is without masks: {}", error.what());
+    return std::nullopt;
+  }
+}
+
+std::string PicturesHtml(const std::vector<MaskPicture>& pictures) {
+  if (pictures.empty()) return "";
+  std::string html = "<div class=\"views\">";
+  for (const MaskPicture& one : pictures) {
+    html += "<article class=\"card photo\"><header><h3>" + EscapeHtml(one.photo) + "</h3></header>" +
+            Picture("mask-pic", one.image, one.width_px, one.height_px, FormatPercent(one.ignored, 2) + " ignored") + "</article>\n";
+  }
+  return html + "</div>";
+}
+
+std::string MasksBlock(const MasksReport& report) {
   const survey::MadeMasks& masks = report.masks;
   if (masks.photos.empty()) return "";
   int64_t pixels = 0;
   for (const survey::MadeMask& mask : masks.photos) pixels += mask.pixels;
-  std::string html = SectionBegin("masks", "Masks") +
-                     Lead(
-                         "What masks ignore is neither trained on nor scored. All photos with ignored pixels are in "
-                         "<code>survey/made_masks/look/</code>: red by the network, blue on ignored ground, grey by given masks.") +
+  std::string html = BlockBegin("Masks",
+                                "What masks ignore is neither trained on nor scored. All photos with ignored pixels are in "
+                                "<code>survey/made_masks/look/</code>: red by the network, blue on ignored ground, grey by given masks.") +
                      TableBegin(Headings({"Ignored"}) + NumberHeadings({"Photos", "Pixels", "Share of all"}), "");
   if (!masks.network.empty()) {
     html += MaskRow("by network " + masks.network + ": " + base::Join(masks.classes), masks, &survey::MadeMask::network, pixels);
   }
   if (!masks.ground.empty()) html += MaskRow("on ground inside " + masks.ground, masks, &survey::MadeMask::ground, pixels);
   html += MaskRow("by given masks", masks, &survey::MadeMask::given, pixels);
-  html += MaskRow("by any", masks, &survey::MadeMask::ignored, pixels) + kTableEnd;
-  if (report.pictures.empty()) return html + "</section>\n";
-  html += "<div class=\"views\">";
-  for (const MaskPicture& one : report.pictures) {
-    html += "<article class=\"card photo\"><header><h3>" + EscapeHtml(one.photo) + "</h3></header>" +
-            Picture("mask-pic", one.image, one.width_px, one.height_px, FormatPercent(one.ignored, 2) + " ignored") + "</article>\n";
+  return html + MaskRow("by any", masks, &survey::MadeMask::ignored, pixels) + kTableEnd + PicturesHtml(report.pictures) + "</div>";
+}
+
+std::string ComparedBlock(const MasksReport& report) {
+  const survey::ComparedPhotos& compared = report.compared;
+  if (compared.photos.empty()) return "";
+  const auto with = std::ranges::count_if(compared.photos, [](const survey::ComparedPhoto& photo) { return photo.rejected > 0.0; });
+  std::string html =
+      BlockBegin("What moved",
+                 "Blocks do not learn from pixels of training photos where other photos agree on another colour. Scores count all pixels. All photos "
+                 "with such pixels, in red, are in <code>movers/</code>.") +
+      TableBegin(Headings({"Found by comparing photos"}) + NumberHeadings({"Share of training photos"}), "");
+  const auto row = [&](const char* what, double share) { html += "<tr>" + TextCell(what) + PercentCell(share, 2) + "</tr>"; };
+  if (compared.movers != "off") {
+    row("seen by enough photos to compare", compared.compared);
+    row(compared.unclear ? "photos disagree; too much to tell what moved, so all of it was trained on" : "shows what moved", compared.moved);
   }
-  return html + "</div></section>\n";
+  if (compared.prefer == "latest") row("of earlier flights: later flights show something else", compared.replaced);
+  double rejected = 0.0;
+  for (const survey::ComparedPhoto& photo : compared.photos) rejected += photo.rejected / static_cast<double>(compared.photos.size());
+  row(with == 1 ? "not trained on, in 1 photo, with its rim" : fmt::format("not trained on, in {} photos, with its rim", with).c_str(), rejected);
+  return html + kTableEnd + PicturesHtml(report.compared_pictures) + "</div>";
+}
+
+}  // namespace
+
+MasksReport CopyMasks(const std::filesystem::path& project_folder, const std::filesystem::path& report_folder) {
+  MasksReport report;
+  const std::filesystem::path survey_folder = project_folder / "survey", movers_folder = project_folder / "movers";
+  if (std::optional<survey::MadeMasks> masks = ReadTable(survey::LoadMadeMasks, survey_folder)) {
+    report.masks = *std::move(masks);
+    std::vector<Candidate> shown;
+    for (const survey::MadeMask& mask : report.masks.photos) {
+      if (!mask.look.empty()) shown.push_back({mask.photo, survey::MadeMasksFolder(survey_folder) / mask.look, ShareOf(mask.ignored, mask.pixels)});
+    }
+    report.pictures = CopyPictures(std::move(shown), "mask", report_folder);
+  }
+  if (std::optional<survey::ComparedPhotos> compared = ReadTable(survey::LoadComparedPhotos, movers_folder)) {
+    report.compared = *std::move(compared);
+    std::vector<Candidate> shown;
+    for (const survey::ComparedPhoto& photo : report.compared.photos) {
+      if (!photo.look.empty()) shown.push_back({photo.photo, movers_folder / photo.look, photo.rejected});
+    }
+    report.compared_pictures = CopyPictures(std::move(shown), "moved", report_folder);
+  }
+  return report;
+}
+
+std::string MasksSection(const MasksReport& report) {
+  const std::string blocks = MasksBlock(report) + ComparedBlock(report);
+  return blocks.empty() ? "" : SectionBegin("masks", "Ignored pixels") + blocks + "</section>\n";
 }
 
 }  // namespace skyquilt::evaluate::page

@@ -1,10 +1,12 @@
-// The section of the report with masks that stage "masks" made: how much they ignore, and photos on which they are shown.
+// The section of the report with pixels that are ignored: by masks that stage "masks" made, and what moved between photos; how much it is, and photos
+// on which it is shown.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/survey/compared_photos.h"
 #include "core/survey/made_masks.h"
 
 namespace skyquilt::evaluate::page {
@@ -19,15 +21,17 @@ struct MaskPicture {
 struct MasksReport {
   survey::MadeMasks masks;
   std::vector<MaskPicture> pictures;  // the most ignored photo first
+  survey::ComparedPhotos compared;    // no photos: they were not compared
+  std::vector<MaskPicture> compared_pictures;
 };
 
-// At most so many pictures, evenly chosen from the most to the least ignored photo.
+// At most so many pictures of a kind, evenly chosen from the most to the least ignored photo.
 constexpr size_t kMaskPictures = 6;
 
-// Reads the survey's table and copies pictures beside the page; those that are missing are left out. Empty when no masks were made, or the table is
-// damaged.
-MasksReport CopyMasks(const std::filesystem::path& survey_folder, const std::filesystem::path& report_folder);
-// Empty without masks.
+// Reads the tables of a project's survey and of its folder movers/ and copies pictures beside the page; those that are missing are left out. Without
+// masks or comparison where none was made, or its table is damaged.
+MasksReport CopyMasks(const std::filesystem::path& project_folder, const std::filesystem::path& report_folder);
+// Empty without masks and comparison.
 std::string MasksSection(const MasksReport& report);
 
 }  // namespace skyquilt::evaluate::page

@@ -156,7 +156,7 @@ std::string BuildReportPage(const ReportInput& input) {
   frame.anchors.emplace_back("geo", "Geo-reference");
   if (!control.empty()) frame.anchors.emplace_back("control", "Control points");
   if (!files.empty()) frame.anchors.emplace_back("input", "Photo folder");
-  if (!masks.empty()) frame.anchors.emplace_back("masks", "Masks");
+  if (!masks.empty()) frame.anchors.emplace_back("masks", "Ignored pixels");
   frame.anchors.emplace_back("details", "Details");
   if (!brightness.empty()) frame.anchors.emplace_back("brightness", "Brightness");
   frame.anchors.emplace_back("training", "Training");

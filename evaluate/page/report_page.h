@@ -45,7 +45,7 @@ struct ReportInput {
   const BrightnessReport* brightness = nullptr;           // nothing or empty: no such section
   const buildings::BuildingsReport* buildings = nullptr;  // nothing: no such section
   InputFiles files;                                       // of the photo folder
-  MasksReport masks;                                      // that were made; none: no such section
+  MasksReport masks;                                      // and what moved; none: no such section
   std::vector<PhotoImages> images;                        // entry i belongs to metrics->photos[i]
   std::vector<control::MarkPicture> mark_pictures;        // of the survey's control points, in their order
   std::optional<MapBackground> background;

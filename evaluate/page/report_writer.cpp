@@ -121,7 +121,7 @@ void WriteReport(const EvaluateInput& input, const metrics::Metrics& metrics, co
   page.brightness = &brightness;
   page.images = pictures.written().images;
   page.files = ReadInputFiles(input.project_folder / "survey" / "input.csv");
-  page.masks = CopyMasks(input.project_folder / "survey", report_folder);
+  page.masks = CopyMasks(input.project_folder, report_folder);
   page.mark_pictures = std::move(marks);
   if (found != nullptr) {
     const skyquilt::buildings::BuildingSet& set = found->compared.set;

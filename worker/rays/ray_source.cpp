@@ -6,6 +6,7 @@
 
 #include "core/image/srgb.h"
 #include "worker/rays/depth_points.h"
+#include "worker/robust/rejected_pixels.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -212,6 +213,7 @@ bool RaySource::PointRay(const DepthPoint& point, PixelRay* ray) const {
 bool RaySource::RayOf(int photo, int x, int y, int level, bool empty, PixelRay* ray) const {
   const auto index = static_cast<size_t>(photo);
   const int size = 1 << level;
+  if (rejected_ != nullptr && ShowsRejected(photo, x, y, size)) return false;
   if (level == 0) {
     const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(pixels_.Width(index)) + static_cast<size_t>(x);
     uint8_t rgb[3];
@@ -233,6 +235,18 @@ bool RaySource::RayOf(int photo, int x, int y, int level, bool empty, PixelRay* 
       empty || (ShowsSky(photo, x, y) &&
                 (size == 1 || (ShowsSky(photo, x + size - 1, y) && ShowsSky(photo, x, y + size - 1) && ShowsSky(photo, x + size - 1, y + size - 1))));
   return true;
+}
+
+bool RaySource::ShowsRejected(int photo, int x, int y, int size) const {
+  const auto index = static_cast<size_t>(photo);
+  if (size == 1) return rejected_->At(index, x, y);
+  const int step = std::min(size, rejected_->cell_px());
+  for (int v = 0; v < size + step; v += step) {
+    for (int u = 0; u < size + step; u += step) {
+      if (rejected_->At(index, x + std::min(u, size - 1), y + std::min(v, size - 1))) return true;
+    }
+  }
+  return false;
 }
 
 std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {

@@ -1,6 +1,6 @@
 // Draws training rays. Photos are cut into tiles, and a field is given the tiles it should learn from, so that a block trains only on pixels that
-// show it. Drawing depends only on the random generator given to it, so there is no state to save. Thread-safe except for UpdateExposures and
-// SetTiles.
+// show it. Drawing depends only on the random generator given to it, so there is no state to save. Thread-safe except for UpdateExposures,
+// SetRejected and SetTiles.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,7 +33,8 @@ struct PixelRay {
   float point_distance_m = 0.0F, point_sigma_m = 0.0F;  // of a sparse point at its pixel, along the ray; sigma 0: none
 };
 
-struct DepthPoint;  // worker/rays/depth_points.h
+struct DepthPoint;     // worker/rays/depth_points.h
+class RejectedPixels;  // worker/robust/rejected_pixels.h
 
 // Rays that are drawn together in one segment of a photo, and how far apart they are at most along each axis, pixels of the cached photo.
 constexpr int kSegmentRays = 6;
@@ -61,6 +62,9 @@ class RaySource {
 
   // Call it after the response has changed.
   void UpdateExposures();
+
+  // No ray is drawn of these pixels, nor of squares that show one; null: of all. They must outlive the source.
+  void SetRejected(const RejectedPixels* rejected) { rejected_ = rejected; }
 
   // Sets the tiles to draw from: `empty_share` of the rays come from `empty` tiles (PixelRay::empty is then true), the others from `inside` tiles.
   // All tiles of a list are equally likely.
@@ -98,9 +102,11 @@ class RaySource {
   // The ray of a square of photo pixels whose first is (x, y); false when it is masked.
   bool RayOf(int photo, int x, int y, int level, bool empty, PixelRay* ray) const;
   bool ShowsSky(int photo, int x, int y) const;
+  bool ShowsRejected(int photo, int x, int y, int size) const;
 
   const image::PixelCache& pixels_;
   const brightness::Response& response_;
+  const RejectedPixels* rejected_ = nullptr;
   std::vector<camera::Camera> cameras_;                         // per photo, at cached size
   std::vector<camera::PixelPitch> pitches_;                     // of the different ones of them
   std::vector<camera::Lens> lenses_;                            // of the same

@@ -29,7 +29,7 @@ class MasksSectionTest : public testing::Test {
 
 TEST_F(MasksSectionTest, ShowsCountsAndPhotosFromTheMostIgnoredOn) {
   Write(12);
-  const MasksReport report = CopyMasks(Survey(), folder_ / "report");
+  const MasksReport report = CopyMasks(folder_.path(), folder_ / "report");
   ASSERT_EQ(report.pictures.size(), kMaskPictures);
   EXPECT_EQ(report.pictures.front().photo, "11.jpg");
   EXPECT_DOUBLE_EQ(report.pictures.front().ignored, 0.11);
@@ -44,18 +44,38 @@ TEST_F(MasksSectionTest, ShowsCountsAndPhotosFromTheMostIgnoredOn) {
 }
 
 TEST_F(MasksSectionTest, IsLeftOutWithoutMasks) {
-  EXPECT_EQ(MasksSection(CopyMasks(Survey(), folder_ / "report")), "");
+  EXPECT_EQ(MasksSection(CopyMasks(folder_.path(), folder_ / "report")), "");
   Write(3);
   base::WriteFileAtomically(survey::MadeMasksFile(Survey()), "{");
-  EXPECT_EQ(MasksSection(CopyMasks(Survey(), folder_ / "report")), "");
+  EXPECT_EQ(MasksSection(CopyMasks(folder_.path(), folder_ / "report")), "");
 }
 
 TEST_F(MasksSectionTest, PicturesThatAreMissingAreLeftOut) {
   Write(4);
   std::filesystem::remove(Survey() / "made_masks/look/2.jpg.jpg");
-  const MasksReport report = CopyMasks(Survey(), folder_ / "report");
+  const MasksReport report = CopyMasks(folder_.path(), folder_ / "report");
   EXPECT_EQ(report.pictures.size(), 2U);
   EXPECT_NE(MasksSection(report), "");
+}
+
+TEST_F(MasksSectionTest, ShowsWhatMoved) {
+  survey::ComparedPhotos compared{.movers = "auto", .prefer = "latest", .compared = 0.81, .moved = 0.0123, .replaced = 0.25};
+  compared.photos = {{.photo = "still.jpg"}, {.photo = "a/moved.jpg", .look = "a/moved.jpg.jpg", .rejected = 0.04}};
+  const std::filesystem::path folder = folder_ / "movers";
+  survey::SaveComparedPhotos(compared, folder);
+  std::filesystem::create_directories(folder / "a");
+  image::SaveJpeg(image::Image8(40, 30, 3), folder / "a/moved.jpg.jpg", 90);
+  const MasksReport report = CopyMasks(folder_.path(), folder_ / "report");
+  ASSERT_EQ(report.compared_pictures.size(), 1U);
+  EXPECT_EQ(report.compared_pictures[0].photo, "a/moved.jpg");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "report" / report.compared_pictures[0].image));
+  const std::string html = MasksSection(report);
+  for (const char* shown : {"81.00", "1.23", "25.00", "in 1 photo,", "2.00", "4.00"}) EXPECT_NE(html.find(shown), std::string::npos) << shown << html;
+  compared.unclear = true;
+  survey::SaveComparedPhotos(compared, folder);
+  EXPECT_NE(MasksSection(CopyMasks(folder_.path(), folder_ / "report")).find("too much to tell"), std::string::npos);
+  base::WriteFileAtomically(folder / "movers.json", "[]");
+  EXPECT_EQ(MasksSection(CopyMasks(folder_.path(), folder_ / "report")), "");
 }
 
 }  // namespace

@@ -1,0 +1,292 @@
+#include "worker/robust/find_movers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/cancel.h"
+#include "core/base/progress.h"
+
+namespace skyquilt::worker {
+namespace {
+
+constexpr double kCell_m = 0.4;
+constexpr int kFewestCellPixels = 2, kMostCellPixels = 8, kCellPixelsWithoutScale = 4;
+constexpr size_t kPhotosAround = 24;  // that are asked about the places of a photo
+constexpr size_t kMostOthers = 12;    // of a place
+constexpr size_t kLeastOthers = 3;
+constexpr double kMajority = 2.0 / 3.0;
+constexpr double kLeastAxisCosine = 0.5;  // between the directions of photos that are compared
+constexpr float kStrong = 0.10F;          // difference of display values, far beyond that of exposures and of a surface's gloss
+constexpr float kWeak = 0.05F;
+constexpr float kAgree = 0.13F;  // largest difference of others from their median colour
+// Other distances that are tried, as parts of that of the surface: in front of it, and a little behind.
+constexpr double kNearest = 0.7, kFarthest = 1.1;
+constexpr int kDistances = 17;
+constexpr double kExplains = 0.6;  // share of the photos that agree at such a distance
+constexpr size_t kFewestCells = 3;
+constexpr double kMostMovers = 0.03;  // share of a photo
+constexpr double kMostLater = 0.5;
+
+enum class Verdict : uint8_t { kUnknown, kAgrees, kWeak, kStrong };
+
+size_t Majority(size_t n) {
+  return std::max(kLeastOthers, static_cast<size_t>(std::ceil(kMajority * static_cast<double>(n))));
+}
+
+// A connected set of cells that differ.
+struct Thing {
+  std::vector<size_t> cells;
+  double evidence = 0.0;  // sum of differences
+};
+
+// What is compared: whether the photo shows what others do not, or also whether others show what it does not.
+enum class Side { kOwn, kBoth };
+
+// Compares one photo with others.
+class PhotoComparison {
+ public:
+  // others: the nearest first.
+  PhotoComparison(const RaySource& source, const PhotoViews& views, size_t photo, std::vector<size_t> others, Side side, int cell_px)
+      : source_(source), views_(views), picture_(views[photo].picture), photo_(photo), others_(std::move(others)), side_(side), cell_px_(cell_px) {
+    const size_t n = picture_.cells.size();
+    verdict_.resize(n, Verdict::kUnknown);
+    difference_.resize(n, 0.0F);
+    explained_.resize(n, -1);
+    for (size_t cell = 0; cell < n; ++cell) Judge(cell);
+  }
+
+  size_t Compared() const {
+    return static_cast<size_t>(std::ranges::count_if(verdict_, [](Verdict verdict) { return verdict != Verdict::kUnknown; }));
+  }
+
+  // With most evidence first.
+  std::vector<Thing> Things() {
+    std::vector<Thing> things;
+    std::vector<char> taken(verdict_.size(), 0);
+    for (size_t first = 0; first < verdict_.size(); ++first) {
+      if (verdict_[first] != Verdict::kStrong || taken[first] != 0 || Explained(first)) continue;
+      Thing thing;
+      thing.cells.push_back(first);
+      taken[first] = 1;
+      for (size_t i = 0; i < thing.cells.size(); ++i) {
+        thing.evidence += static_cast<double>(difference_[thing.cells[i]]);
+        ForNeighbours(thing.cells[i], false, [&](size_t cell) {
+          if (taken[cell] != 0 || verdict_[cell] < Verdict::kWeak || Explained(cell)) return;
+          taken[cell] = 1;
+          thing.cells.push_back(cell);
+        });
+      }
+      if (thing.cells.size() >= kFewestCells) things.push_back(std::move(thing));
+    }
+    std::ranges::stable_sort(things, [](const Thing& a, const Thing& b) { return a.evidence > b.evidence; });
+    return things;
+  }
+
+  // Calls each(cell) for cells beside this one, corner to corner too with `diagonal`.
+  template <typename Each>
+  void ForNeighbours(size_t cell, bool diagonal, const Each& each) const {
+    const int column = ColumnOf(cell), row = RowOf(cell);
+    for (int v = std::max(0, row - 1); v <= std::min(picture_.rows - 1, row + 1); ++v) {
+      for (int u = std::max(0, column - 1); u <= std::min(picture_.columns - 1, column + 1); ++u) {
+        if ((u == column && v == row) || (!diagonal && u != column && v != row)) continue;
+        each(static_cast<size_t>(v) * static_cast<size_t>(picture_.columns) + static_cast<size_t>(u));
+      }
+    }
+  }
+
+ private:
+  int ColumnOf(size_t cell) const { return static_cast<int>(cell % static_cast<size_t>(picture_.columns)); }
+  int RowOf(size_t cell) const { return static_cast<int>(cell / static_cast<size_t>(picture_.columns)); }
+
+  // The ray through a cell's middle, up to the surface of the context.
+  struct CellRay {
+    Eigen::Vector3d origin, direction;
+    double distance_m = 0.0;  // NaN: there is none
+  };
+  CellRay RayOf(size_t cell) const {
+    const Eigen::Vector2d middle = (Eigen::Vector2d(ColumnOf(cell), RowOf(cell)) + Eigen::Vector2d::Constant(0.5)) * cell_px_;
+    CellRay ray;
+    source_.RayThrough(static_cast<int>(photo_), middle, &ray.origin, &ray.direction);
+    ray.distance_m = views_.DistanceAt(photo_, middle);
+    return ray;
+  }
+
+  void Judge(size_t cell) {
+    const CellPicture::Cell& own = picture_.cells[cell];
+    const CellRay ray = RayOf(cell);
+    if (own.usable == 0 || !std::isfinite(ray.distance_m)) return;
+    const CellPicture::Range around = picture_.RangeAround(ColumnOf(cell), RowOf(cell));
+    std::array<PlaceSighting, kMostOthers> seen;
+    std::array<float, kMostOthers> differences;
+    size_t n = 0, strong = 0, weak = 0, own_weak = 0;
+    for (const size_t other : others_) {
+      const std::optional<PlaceSighting> sighting = views_.Look(other, ray.origin + ray.distance_m * ray.direction, own, around, true);
+      if (!sighting) continue;
+      const float difference = side_ == Side::kBoth ? std::max(sighting->own, sighting->place) : sighting->own;
+      strong += difference > kStrong ? 1 : 0;
+      weak += difference > kWeak ? 1 : 0;
+      own_weak += sighting->own > kWeak ? 1 : 0;
+      differences[n] = difference;
+      seen[n++] = *sighting;
+      if (n == kMostOthers) break;
+    }
+    if (n < kLeastOthers) return;
+    verdict_[cell] = Verdict::kAgrees;
+    if (weak < Majority(n) || Agreeing(std::span(seen).first(n)) < Majority(n)) return;
+    verdict_[cell] = strong >= Majority(n) ? Verdict::kStrong : Verdict::kWeak;
+    // What others show and this photo does not is nothing in this photo that could stand elsewhere.
+    if (own_weak < Majority(n)) explained_[cell] = 0;
+    const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(n / 2);
+    std::nth_element(differences.begin(), middle, differences.begin() + static_cast<std::ptrdiff_t>(n));
+    difference_[cell] = *middle;
+  }
+
+  // How many are near the median colour of all.
+  static size_t Agreeing(std::span<const PlaceSighting> seen) {
+    std::array<float, 3> median{};
+    for (size_t c = 0; c < 3; ++c) {
+      std::array<float, kMostOthers> values;
+      for (size_t i = 0; i < seen.size(); ++i) values[i] = seen[i].rgb[c];
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
+      std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(seen.size()));
+      median[c] = *middle;
+    }
+    return static_cast<size_t>(std::ranges::count_if(seen, [&](const PlaceSighting& one) {
+      float most = 0.0F;
+      for (size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(one.rgb[c] - median[c]));
+      return most <= kAgree;
+    }));
+  }
+
+  // Whether the cell shows something that stands still at another distance than that of the context's surface. Found out when it is asked for.
+  bool Explained(size_t cell) {
+    if (explained_[cell] >= 0) return explained_[cell] == 1;
+    const CellPicture::Cell& own = picture_.cells[cell];
+    const CellRay ray = RayOf(cell);
+    const CellPicture::Range around = picture_.RangeAround(ColumnOf(cell), RowOf(cell));
+    bool explained = false;
+    for (int k = 0; k < kDistances && !explained; ++k) {
+      const double part = kNearest + (kFarthest - kNearest) * k / (kDistances - 1);
+      const Eigen::Vector3d place = ray.origin + part * ray.distance_m * ray.direction;
+      size_t n = 0, agree = 0;
+      for (const size_t other : others_) {
+        const std::optional<PlaceSighting> sighting = views_.Look(other, place, own, around, false);
+        if (!sighting) continue;
+        agree += sighting->own <= kWeak ? 1 : 0;
+        if (++n == kMostOthers) break;
+      }
+      explained = n >= kLeastOthers && static_cast<double>(agree) >= kExplains * static_cast<double>(n);
+    }
+    explained_[cell] = explained ? 1 : 0;
+    return explained;
+  }
+
+  const RaySource& source_;
+  const PhotoViews& views_;
+  const CellPicture& picture_;
+  size_t photo_;
+  std::vector<size_t> others_;
+  Side side_;
+  int cell_px_;
+  std::vector<Verdict> verdict_;   // per cell
+  std::vector<float> difference_;  // per cell that differs: median over the photos
+  std::vector<int8_t> explained_;  // per cell: -1 not looked at yet
+};
+
+// Training photos that look in a similar direction from nearby; later: of later flights only.
+std::vector<size_t> PhotosAround(const survey::Survey& survey, const PhotoViews& views, size_t photo, bool later) {
+  std::vector<std::pair<double, size_t>> others;
+  for (size_t i = 0; i < views.size(); ++i) {
+    if (i == photo || views[i].picture.cells.empty() || views[i].axis.dot(views[photo].axis) < kLeastAxisCosine) continue;
+    if (later && survey.photos[i].flight <= survey.photos[photo].flight) continue;
+    others.emplace_back((views[i].eye - views[photo].eye).squaredNorm(), i);
+  }
+  const size_t n = std::min(kPhotosAround, others.size());
+  std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(n), others.end());
+  std::vector<size_t> nearest;
+  for (size_t i = 0; i < n; ++i) nearest.push_back(others[i].second);
+  return nearest;
+}
+
+struct Found {
+  std::vector<uint8_t> cells;  // not 0: rejected; empty: the photo was not compared
+  size_t differing = 0;        // cells, before the limit
+  size_t compared = 0;
+};
+
+// Things and the cells around them, until the share `most` of the photo is reached; those with most evidence first.
+Found Reject(PhotoComparison comparison, size_t cells, double most) {
+  Found found{.cells = std::vector<uint8_t>(cells, 0), .compared = comparison.Compared()};
+  const auto limit = static_cast<size_t>(most * static_cast<double>(cells));
+  size_t rejected = 0;
+  for (const Thing& thing : comparison.Things()) {
+    found.differing += thing.cells.size();
+    if (rejected + thing.cells.size() > limit) continue;
+    rejected += thing.cells.size();
+    for (const size_t cell : thing.cells) {
+      found.cells[cell] = 1;
+      comparison.ForNeighbours(cell, true, [&](size_t beside) { found.cells[beside] = 1; });
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+int CellPixels(const survey::Survey& survey, const image::PixelCache& pixels, double gsd_m, double bytes) {
+  double all = 0.0;
+  for (size_t i = 0; i < survey.photos.size(); ++i) {
+    if (!survey.photos[i].is_test) all += static_cast<double>(pixels.Width(i)) * pixels.Height(i);
+  }
+  int cell_px = kCellPixelsWithoutScale;
+  if (std::isfinite(gsd_m)) cell_px = static_cast<int>(std::clamp(std::round(kCell_m / gsd_m), double{kFewestCellPixels}, double{kMostCellPixels}));
+  while (all / (cell_px * cell_px) * static_cast<double>(sizeof(CellPicture::Cell) + sizeof(float)) > bytes) ++cell_px;
+  return cell_px;
+}
+
+Movers FindMovers(const survey::Survey& survey, const RaySource& source, const PhotoViews& views, const RobustOptions& options, int cell_px,
+                  base::ThreadPool& threads) {
+  std::vector<Found> movers(views.size()), replaced(views.size());
+  base::Progress progress("comparing photos", static_cast<double>(views.size()), "photos");
+  threads.ParallelFor(static_cast<int64_t>(views.size()), [&](int64_t task, int /*thread*/) {
+    const auto photo = static_cast<size_t>(task);
+    const size_t cells = views[photo].picture.cells.size();
+    if (cells == 0 || base::CancelRequested()) return;
+    if (options.movers != "off") {
+      movers[photo] = Reject({source, views, photo, PhotosAround(survey, views, photo, false), Side::kOwn, cell_px}, cells, kMostMovers);
+    }
+    if (options.prefer == "latest") {
+      std::vector<size_t> later = PhotosAround(survey, views, photo, true);
+      if (!later.empty()) replaced[photo] = Reject({source, views, photo, std::move(later), Side::kBoth, cell_px}, cells, kMostLater);
+    }
+    progress.Advance();
+  });
+  base::ThrowIfCancelled();
+  progress.Finish();
+  const auto share = [&](const std::vector<Found>& found, size_t Found::*count) {
+    double cells = 0.0, counted = 0.0;
+    for (const Found& one : found) {
+      cells += static_cast<double>(one.cells.size());
+      counted += static_cast<double>(one.*count);
+    }
+    return cells > 0.0 ? counted / cells : 0.0;
+  };
+  Movers result{.pixels = {views.size(), cell_px},
+                .compared = share(movers, &Found::compared),
+                .moved = share(movers, &Found::differing),
+                .replaced = share(replaced, &Found::differing)};
+  result.unclear = options.movers == "auto" && result.moved > kMostMovers;
+  for (size_t i = 0; i < views.size(); ++i) {
+    std::vector<uint8_t> cells = std::move(replaced[i].cells);
+    if (!result.unclear && !movers[i].cells.empty()) {
+      if (cells.empty()) cells.resize(movers[i].cells.size(), 0);
+      std::ranges::transform(cells, movers[i].cells, cells.begin(), [](uint8_t a, uint8_t b) { return static_cast<uint8_t>(a | b); });
+    }
+    if (!cells.empty()) result.pixels.Set(i, views[i].picture.columns, views[i].picture.rows, cells);
+  }
+  return result;
+}
+
+}  // namespace skyquilt::worker

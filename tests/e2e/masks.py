@@ -1,4 +1,4 @@
-"""Masks by a network and of ground to ignore: made over ranks, used from training to report, refused with a remedy where they cannot be made."""
+"""Masks by a network and of ground to ignore, and what moved between photos: made over ranks, used from training to report, refused with a remedy where they cannot be made."""
 import json
 import math
 import struct
@@ -89,17 +89,22 @@ def test(skyquilt, folder):
                                        "ignore": ["bright"]}))
     other = folder / "ranks"
     run = replaced(SMALL, "--steps", "60")
-    skyquilt.call("run", survey, "-o", other, *run, "--segment", network, "--segment-config", config_json, "--ignore-ground", pond, ranks=3,
-                  says="masks are made by 2 ranks")
+    skyquilt.call("run", survey, "-o", other, *run, "--segment", network, "--segment-config", config_json, "--ignore-ground", pond, "--movers", "on",
+                  ranks=3, says=("masks are made by 2 ranks", "of the photos could be compared with others"))
     expect(table(other) == made, "ranks make the same masks")
     page = (other / "report" / "index.html").read_text()
     expect("by network bright.onnx: bright" in page and "on ground inside pond.geojson" in page, "the report has masks")
     expect((other / "report" / "images" / "mask_0.jpg").is_file(), "the report shows masks")
+    compared = json.loads((other / "movers" / "movers.json").read_text())
+    expect(compared["compared"] > 0.3 and "What moved" in page, compared["compared"])
+    for photo in compared["photos"]:
+        expect(not photo["look"] or (other / "movers" / photo["look"]).is_file(), photo)
 
     # What training has seen stays; --restart removes it.
     context = other / "checkpoints" / "context.h5"
     skyquilt.call("masks", other, "--ignore-ground", "", status=2, says=("'train'", "ignored ground", "--restart"))
     skyquilt.call("run", survey, "-o", other, *run, status=2, says=("'train'", "network", "--restart"))
+    skyquilt.call("train", other, "--movers", "off", status=2, says=("'train'", "robust.movers", "--restart"))
     expect(context.is_file() and table(other) == made, "nothing was changed")
     skyquilt.call("masks", other, "--ignore-ground", "", "--restart")
     expect(not context.exists() and (other / "survey" / "survey.json").is_file(), "training is removed, the survey is not")

@@ -1,5 +1,6 @@
 """Projects and surveys as arrays and dicts, scores of pictures, and whether the stubs say what the module has."""
 import ast
+import csv
 import inspect
 import json
 import pathlib
@@ -8,7 +9,7 @@ import sys
 import unittest
 
 import numpy as np
-from support import InFolder, pixels, scene_project
+from support import PROGRAM, InFolder, harness, pixels, scene_project
 
 import skyquilt
 from skyquilt import _skyquilt
@@ -92,6 +93,36 @@ class Files(InFolder):
             with self.assertRaisesRegex(skyquilt.InputError, f"skyquilt.{stage}") as caught:
                 ask()
             self.assertTrue(caught.exception.file.is_relative_to(PROJECT.folder))
+
+
+class Buildings(InFolder):
+    def test_features_are_the_rows_of_the_table_and_lie_where_it_says(self):
+        harness.houses_project(PROGRAM, self.folder / "houses")
+        project = skyquilt.buildings(self.folder / "houses", quiet=True)
+        collection = project.buildings
+        with (project.folder / "buildings" / "buildings.csv").open(newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertGreater(len(rows), 2)
+        self.assertEqual(collection["type"], "FeatureCollection")
+        self.assertTrue(collection["skyquilt:georeferenced"] and collection["skyquilt:metric"])
+        self.assertEqual(len(collection["features"]), len(rows))
+        for feature, row in zip(collection["features"], rows):
+            properties = feature["properties"]
+            self.assertEqual(list(properties), list(row))
+            for name, text in row.items():
+                value = properties[name]
+                if value is None or isinstance(value, str):
+                    self.assertEqual(value or "", text, name)
+                else:
+                    np.testing.assert_allclose(value, float(text), rtol=1e-6, atol=5e-3, err_msg=name)
+            outer = np.array(feature["geometry"]["coordinates"][0])
+            np.testing.assert_array_equal(outer[0], outer[-1])
+            metres = (outer - outer[0]) * (111320.0 * np.cos(np.radians(outer[0, 1])), 111320.0)
+            x, y = metres[:-1].T
+            area = 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+            self.assertLess(abs(area / properties["area_m2"] - 1.0), 0.05, feature["id"])
+            middle = 0.5 * (outer.min(axis=0) + outer.max(axis=0))
+            self.assertLess(np.abs((middle - (properties["longitude"], properties["latitude"])) * 111320.0).max(), 15.0)
 
 
 class Scores(unittest.TestCase):

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <set>
 
 #include "core/base/cancel.h"
 #include "core/base/progress.h"
@@ -20,7 +20,7 @@ constexpr double kMajority = 2.0 / 3.0;
 constexpr double kLeastAxisCosine = 0.5;  // between the directions of photos that are compared
 constexpr float kStrong = 0.10F;          // difference of display values, far beyond that of exposures and of a surface's gloss
 constexpr float kWeak = 0.05F;
-constexpr float kAgree = 0.13F;  // largest difference of others from their median colour
+constexpr float kAgree = 0.2F;  // largest difference of others from their median colour
 // Other distances that are tried, as parts of that of the surface: in front of it, and a little behind.
 constexpr double kNearest = 0.7, kFarthest = 1.1;
 constexpr int kDistances = 17;
@@ -78,7 +78,7 @@ class PhotoComparison {
           thing.cells.push_back(cell);
         });
       }
-      if (thing.cells.size() >= kFewestCells) things.push_back(std::move(thing));
+      if (IsLarge(thing)) things.push_back(std::move(thing));
     }
     std::ranges::stable_sort(things, [](const Thing& a, const Thing& b) { return a.evidence > b.evidence; });
     return things;
@@ -158,6 +158,18 @@ class PhotoComparison {
       for (size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(one.rgb[c] - median[c]));
       return most <= kAgree;
     }));
+  }
+
+  // What the photo shows must somewhere be two cells wide: lamps, wires and edges are thin, and easily misplaced. What others show is wide in them,
+  // but they agree about its middle only.
+  bool IsLarge(const Thing& thing) const {
+    if (side_ == Side::kBoth) return thing.cells.size() >= kFewestCells;
+    const std::set<size_t> cells(thing.cells.begin(), thing.cells.end());
+    const auto columns = static_cast<size_t>(picture_.columns);
+    return std::ranges::any_of(thing.cells, [&](size_t cell) {
+      return ColumnOf(cell) + 1 < picture_.columns && cells.contains(cell + 1) && cells.contains(cell + columns) &&
+             cells.contains(cell + columns + 1);
+    });
   }
 
   // Whether the cell shows something that stands still at another distance than that of the context's surface. Found out when it is asked for.

@@ -4,7 +4,7 @@
 //   - at least three other photos see the place, two thirds of them differ from its colour by more than any pixel around can explain, and as
 //     many agree with each other (of later flights: or show there what it does not);
 //   - and no other distance along its ray makes most of them agree, as it does for lamps, branches and roofs that the context does not have.
-// Cells beside such ones that differ by half as much belong to the same thing. Little things of less than three cells are not looked for. As
+// Cells beside such ones that differ by half as much belong to the same thing. Things that are nowhere two cells wide are left alone. As
 // RobustNeRF (Sabour et al. 2023) and its gates against taking thin things and parked cars for movers, but by photos in place of residuals of the
 // field: a field that was trained on the movers shows them, too.
 #pragma once

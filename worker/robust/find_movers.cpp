@@ -26,6 +26,7 @@ constexpr double kNearest = 0.7, kFarthest = 1.1;
 constexpr int kDistances = 17;
 constexpr double kExplains = 0.6;  // share of the photos that agree at such a distance
 constexpr size_t kFewestCells = 3;
+constexpr int kSmoothCells = 5;       // side of the squares in which smooth differences are measured
 constexpr double kMostMovers = 0.03;  // share of a photo
 constexpr double kMostLater = 0.5;
 
@@ -54,6 +55,7 @@ class PhotoComparison {
     verdict_.resize(n, Verdict::kUnknown);
     difference_.resize(n, 0.0F);
     explained_.resize(n, -1);
+    if (side == Side::kOwn) RemoveSmoothDifference();
     for (size_t cell = 0; cell < n; ++cell) Judge(cell);
   }
 
@@ -113,28 +115,85 @@ class PhotoComparison {
     return ray;
   }
 
-  void Judge(size_t cell) {
+  // The others that show a cell's place on the surface; returns their number.
+  size_t LookAround(size_t cell, std::array<PlaceSighting, kMostOthers>* seen) const {
     const CellPicture::Cell& own = picture_.cells[cell];
     const CellRay ray = RayOf(cell);
-    if (own.usable == 0 || !std::isfinite(ray.distance_m)) return;
+    if (own.usable == 0 || !std::isfinite(ray.distance_m)) return 0;
     const CellPicture::Range around = picture_.RangeAround(ColumnOf(cell), RowOf(cell));
+    size_t n = 0;
+    for (size_t i = 0; i < others_.size() && n < kMostOthers; ++i) {
+      const std::optional<PlaceSighting> sighting = views_.Look(others_[i], ray.origin + ray.distance_m * ray.direction, own, around, true);
+      if (sighting) (*seen)[n++] = *sighting;
+    }
+    return n;
+  }
+
+  // Takes away what the photo differs from the others over several metres: the bright spot opposite the sun, clouds, exposure. Nothing moves there.
+  void RemoveSmoothDifference() {
+    const int columns = (picture_.columns + kSmoothCells - 1) / kSmoothCells, rows = (picture_.rows + kSmoothCells - 1) / kSmoothCells;
+    const auto at = [&](int column, int row) {
+      return static_cast<size_t>(std::clamp(row, 0, rows - 1)) * static_cast<size_t>(columns) +
+             static_cast<size_t>(std::clamp(column, 0, columns - 1));
+    };
+    std::vector<std::array<std::vector<float>, 3>> differences(static_cast<size_t>(columns) * static_cast<size_t>(rows));
     std::array<PlaceSighting, kMostOthers> seen;
+    for (size_t cell = 0; cell < picture_.cells.size(); ++cell) {
+      if (ColumnOf(cell) % 2 != 0 || RowOf(cell) % 2 != 0) continue;
+      const size_t n = LookAround(cell, &seen);
+      if (n < kLeastOthers) continue;
+      const std::array<float, 3> median = MedianColor(std::span(seen).first(n));
+      auto& of_square = differences[at(ColumnOf(cell) / kSmoothCells, RowOf(cell) / kSmoothCells)];
+      for (size_t c = 0; c < 3; ++c) of_square[c].push_back(static_cast<float>(picture_.cells[cell].rgb[c]) / CellPicture::kUnits - median[c]);
+    }
+    // Medians over 3 x 3 squares, which are larger than what is looked for.
+    std::vector<std::array<float, 3>> smooth(differences.size(), std::array<float, 3>{});
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        for (size_t c = 0; c < 3; ++c) {
+          std::vector<float> around;
+          for (int v = std::max(0, row - 1); v <= std::min(rows - 1, row + 1); ++v) {
+            for (int u = std::max(0, column - 1); u <= std::min(columns - 1, column + 1); ++u) {
+              around.insert(around.end(), differences[at(u, v)][c].begin(), differences[at(u, v)][c].end());
+            }
+          }
+          if (around.size() < static_cast<size_t>(kSmoothCells)) continue;
+          const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
+          std::nth_element(around.begin(), middle, around.end());
+          smooth[at(column, row)][c] = *middle;
+        }
+      }
+    }
+    for (size_t cell = 0; cell < picture_.cells.size(); ++cell) {
+      const float x = (static_cast<float>(ColumnOf(cell)) + 0.5F) / kSmoothCells - 0.5F,
+                  y = (static_cast<float>(RowOf(cell)) + 0.5F) / kSmoothCells - 0.5F;
+      const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
+      const float u = x - static_cast<float>(left), v = y - static_cast<float>(top);
+      for (size_t c = 0; c < 3; ++c) {
+        const float above = (1.0F - u) * smooth[at(left, top)][c] + u * smooth[at(left + 1, top)][c];
+        const float below = (1.0F - u) * smooth[at(left, top + 1)][c] + u * smooth[at(left + 1, top + 1)][c];
+        uint8_t& value = picture_.cells[cell].rgb[c];
+        value = static_cast<uint8_t>(
+            std::clamp(std::lround(static_cast<float>(value) - CellPicture::kUnits * ((1.0F - v) * above + v * below)), 0L, 255L));
+      }
+    }
+  }
+
+  void Judge(size_t cell) {
+    std::array<PlaceSighting, kMostOthers> seen;
+    const size_t n = LookAround(cell, &seen);
     std::array<float, kMostOthers> differences;
-    size_t n = 0, strong = 0, weak = 0, own_weak = 0;
-    for (const size_t other : others_) {
-      const std::optional<PlaceSighting> sighting = views_.Look(other, ray.origin + ray.distance_m * ray.direction, own, around, true);
-      if (!sighting) continue;
-      const float difference = side_ == Side::kBoth ? std::max(sighting->own, sighting->place) : sighting->own;
-      strong += difference > kStrong ? 1 : 0;
-      weak += difference > kWeak ? 1 : 0;
-      own_weak += sighting->own > kWeak ? 1 : 0;
-      differences[n] = difference;
-      seen[n++] = *sighting;
-      if (n == kMostOthers) break;
+    size_t strong = 0, weak = 0, own_weak = 0;
+    for (size_t i = 0; i < n; ++i) {
+      differences[i] = side_ == Side::kBoth ? std::max(seen[i].own, seen[i].place) : seen[i].own;
+      strong += differences[i] > kStrong ? 1 : 0;
+      weak += differences[i] > kWeak ? 1 : 0;
+      own_weak += seen[i].own > kWeak ? 1 : 0;
     }
     if (n < kLeastOthers) return;
     verdict_[cell] = Verdict::kAgrees;
-    if (weak < Majority(n) || Agreeing(std::span(seen).first(n)) < Majority(n)) return;
+    const std::array<float, 3> median = MedianColor(std::span(seen).first(n));
+    if (weak < Majority(n) || Agreeing(std::span(seen).first(n), median) < Majority(n)) return;
     verdict_[cell] = strong >= Majority(n) ? Verdict::kStrong : Verdict::kWeak;
     // What others show and this photo does not is nothing in this photo that could stand elsewhere.
     if (own_weak < Majority(n)) explained_[cell] = 0;
@@ -143,8 +202,7 @@ class PhotoComparison {
     difference_[cell] = *middle;
   }
 
-  // How many are near the median colour of all.
-  static size_t Agreeing(std::span<const PlaceSighting> seen) {
+  static std::array<float, 3> MedianColor(std::span<const PlaceSighting> seen) {
     std::array<float, 3> median{};
     for (size_t c = 0; c < 3; ++c) {
       std::array<float, kMostOthers> values;
@@ -153,6 +211,11 @@ class PhotoComparison {
       std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(seen.size()));
       median[c] = *middle;
     }
+    return median;
+  }
+
+  // How many are near the median colour of all.
+  static size_t Agreeing(std::span<const PlaceSighting> seen, const std::array<float, 3>& median) {
     return static_cast<size_t>(std::ranges::count_if(seen, [&](const PlaceSighting& one) {
       float most = 0.0F;
       for (size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(one.rgb[c] - median[c]));
@@ -197,7 +260,7 @@ class PhotoComparison {
 
   const RaySource& source_;
   const PhotoViews& views_;
-  const CellPicture& picture_;
+  CellPicture picture_;
   size_t photo_;
   std::vector<size_t> others_;
   Side side_;

@@ -183,6 +183,19 @@ TEST_F(FindMoversTest, WavesAreLimitedOrNotRejectedAtAll) {
   for (size_t photo = 0; photo < kPhotos; ++photo) EXPECT_EQ(automatic.pixels.Share(photo), 0.0) << photo;
 }
 
+TEST_F(FindMoversTest, LightThatChangesSmoothlyIsNoThing) {
+  // A bright spot opposite the sun, which moves with the camera.
+  const auto spot = [](int photo, const Eigen::Vector3d& p) {
+    const double x = p.x() - (-12.0 + 8.0 * (photo % 4)) - 4.0, y = p.y() - (-12.0 + 8.0 * (photo / 4)) + 3.0;
+    return 0.35 * std::exp(-(x * x + y * y) / 450.0);
+  };
+  const Box car = CarAt(0.0, 0.0, {10}, kRed);
+  Photograph({car}, spot);
+  const Movers movers = Find({.movers = "on"});
+  EXPECT_GT(RejectedOf(movers, 10, car), 0.9);
+  EXPECT_LT(RejectedElsewhere(movers, {car}, 3.0), 0.001);
+}
+
 TEST_F(FindMoversTest, OfTwoFlightsTheEarlierOneGivesWay) {
   flight_of_ = [](int photo) { return photo % 2; };
   std::vector<int> first, second;

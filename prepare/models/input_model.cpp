@@ -22,6 +22,8 @@ std::string FormatName(ModelFormat format) {
       return "a Metashape cameras.xml";
     case ModelFormat::kOpf:
       return "a Pix4D project (OPF)";
+    case ModelFormat::kPosesBounds:
+      return "a poses_bounds.npy (LLFF)";
   }
   return "";
 }

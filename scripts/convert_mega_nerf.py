@@ -5,8 +5,8 @@
   skyquilt run rubble-pixsfm --model rubble-pixsfm/transforms.json -o out
 
 Reads coordinates.pt and {train,val}/metadata/NAME.pt, and names the pictures {train,val}/rgbs/NAME.jpg (or .png), which stay where they are. Those of val
-are held out. Needs PyTorch (pip install torch, or Debian's python3-torch), any version. Files are read without running code in them where PyTorch can do
-that (from 1.13 on); with an older one, convert only files whose origin you trust.
+are held out. Needs PyTorch (pip install torch, or Debian's python3-torch). PyTorch's files may hold code that runs when they are read; here they are read
+without it, which needs PyTorch 2.0 or later. With an older one (Debian 12 has 1.13) add --trust, if you trust where the files come from.
 
 Conventions (Turki et al. 2022, github.com/cmusatyalab/mega-nerf, README.md and ray_utils.py): c2w is 3 x 4, from the camera (right, up, backwards) to a world
 of axes down, right, backwards, in units of pose_scale_factor metres about origin_drb. Pixels are looked at through their middle, and cx and cy count from
@@ -14,6 +14,7 @@ the picture's corner. Written are metres about origin_drb with x right, y forwar
 Exit status: 0 done, 2 wrong usage or a missing module, 3 a file is missing or not as described; the message says which.
 """
 import argparse
+import inspect
 import json
 import math
 import sys
@@ -28,19 +29,22 @@ class BadData(Exception):
     pass
 
 
-def load(file):
+def load(file, trusted):
     """The dictionary in a PyTorch file."""
     import torch
 
     if not file.is_file():
         raise BadData(f"{file}: no such file. Give the data set's folder, with coordinates.pt and the folders train and val")
     try:
-        try:
+        if trusted:  # without the word for versions that do not know it, and with it for those whose default is the other
+            known = "weights_only" in inspect.signature(torch.load).parameters
+            content = torch.load(file, map_location="cpu", **({"weights_only": False} if known else {}))
+        else:
             content = torch.load(file, map_location="cpu", weights_only=True)
-        except TypeError:  # before PyTorch 1.13
-            content = torch.load(file, map_location="cpu")
     except Exception as error:  # pickle, zip and PyTorch all have their own
-        raise BadData(f"{file}: cannot be read by PyTorch ({type(error).__name__}: {error}). Download it again") from error
+        first = (str(error).splitlines() or [""])[0]
+        advice = "" if trusted else ", or add --trust if you trust where it comes from: PyTorch before 2.0 reads it only then"
+        raise BadData(f"{file}: cannot be read by PyTorch {torch.__version__} ({type(error).__name__}: {first}). Download it again{advice}") from error
     if not isinstance(content, dict):
         raise BadData(f"{file}: holds no dictionary. Download it again")
     return content
@@ -76,8 +80,8 @@ def transform_matrix(c2w, scale):
     return [[column[r] for column in columns] for r in range(3)] + [[0.0, 0.0, 0.0, 1.0]]
 
 
-def frame_of(folder, part, metadata, scale):
-    content = load(metadata)
+def frame_of(folder, part, metadata, scale, trusted):
+    content = load(metadata, trusted)
     stem = metadata.stem
     picture = next((Path(part) / "rgbs" / (stem + e) for e in EXTENSIONS if (folder / part / "rgbs" / (stem + e)).is_file()), None)
     if picture is None:
@@ -90,8 +94,8 @@ def frame_of(folder, part, metadata, scale):
             "transform_matrix": transform_matrix(numbers(metadata, content, "c2w", 3, 4), scale)}
 
 
-def convert(folder):
-    coordinates = load(folder / "coordinates.pt")
+def convert(folder, trusted):
+    coordinates = load(folder / "coordinates.pt", trusted)
     scale = numbers(folder / "coordinates.pt", coordinates, "pose_scale_factor")
     numbers(folder / "coordinates.pt", coordinates, "origin_drb", 3)
     if scale <= 0.0:
@@ -102,7 +106,7 @@ def convert(folder):
         if not found:
             raise BadData(f"{folder / part / 'metadata'}: has no .pt files. Give the data set's folder, with coordinates.pt and the folders train and val")
         for metadata in found:
-            frames.append(frame_of(folder, part, metadata, scale))
+            frames.append(frame_of(folder, part, metadata, scale, trusted))
             if part == "val":
                 held_out.append(frames[-1]["file_path"])
     return {"camera_model": "PINHOLE", "up": [0.0, 0.0, 1.0], "metres_per_unit": 1.0, "test_filenames": held_out, "frames": frames}
@@ -112,6 +116,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="the data set: coordinates.pt, train/ and val/")
     parser.add_argument("-o", "--out", type=Path, help="file to write; default: transforms.json in the folder. Its pictures count from where it lies")
+    parser.add_argument("--trust", action="store_true", help="let the files run code while they are read, as PyTorch did before 2.0")
     arguments = parser.parse_args()
     out = arguments.out or arguments.folder / "transforms.json"
     if out.resolve().parent != arguments.folder.resolve():
@@ -123,7 +128,7 @@ def main():
         print("PyTorch is needed to read the files: pip install torch, or Debian's python3-torch", file=sys.stderr)
         return 2
     try:
-        content = convert(arguments.folder)
+        content = convert(arguments.folder, arguments.trust)
     except BadData as error:
         print(error, file=sys.stderr)
         return 3

@@ -44,8 +44,9 @@ class ModelPhotos {
   // names: relative to root, '/' separated.
   ModelPhotos(std::filesystem::path root, const std::vector<std::string>& names);
 
-  // The name among the photos that a model means by `label`: the same path; a file below the model's folder; PhotoNames::FindFileName. Otherwise the
-  // label itself, cleaned: a photo that is not there.
+  // The name among the photos that a model means by `label`: the same path, or a file below the model's folder. Nothing when there is no such photo.
+  std::optional<std::string> FindPath(const std::string& label, const std::filesystem::path& model_folder) const;
+  // The same, else PhotoNames::FindFileName. Otherwise the label itself, cleaned: a photo that is not there.
   std::string Resolve(const std::string& label, const std::filesystem::path& model_folder) const;
   // Width and height as stored; nothing when there is no such photo or it cannot be read.
   std::optional<Eigen::Vector2i> SizeOf(const std::string& name) const;

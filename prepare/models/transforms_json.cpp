@@ -98,12 +98,15 @@ geo::Rigid3d PoseOfFrame(const JsonValue& frame) {
   return PoseFromCentre(*rotation * Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal(), world_from_cam.col(3));
 }
 
-// The name of a frame's photo.
-std::string NameOf(const JsonValue& frame, const ModelPhotos& photos, const std::filesystem::path& folder) {
-  if (!frame.Find(kScaledMatrix)) return photos.Resolve(frame.At("file_path").Text(), folder);
-  const std::string file = fmt::format("{:04d}.png", frame.At("frame_index").Integer(0, 99'999'999));
-  std::string name = photos.Resolve(file, folder);
-  return photos.Has(name) ? name : photos.Resolve("rgb/" + file, folder);
+// The name of a frame's photo. In a data set, parts of which have pictures of the same names, only its own path is it.
+std::string NameOf(const JsonValue& frame, const ModelPhotos& photos, const std::filesystem::path& folder, bool in_set) {
+  if (frame.Find(kScaledMatrix)) {
+    const std::string file = fmt::format("{:04d}.png", frame.At("frame_index").Integer(0, 99'999'999));
+    const std::optional<std::string> beside = photos.FindPath(file, folder);
+    return beside ? *beside : photos.FindPath("rgb/" + file, folder).value_or(file);
+  }
+  const std::string path = frame.At("file_path").Text();
+  return in_set ? photos.FindPath(path, folder).value_or(PhotoNames::Cleaned(path)) : photos.Resolve(path, folder);
 }
 
 // Names in nerfstudio's lists of photos per split.
@@ -201,7 +204,7 @@ InputModel ReadTransforms(const std::vector<TransformsFile>& files, const ModelP
     }
     for (size_t i = 0; i < frames.Size(); ++i) {
       const JsonValue frame = frames.At(i);
-      const std::string name = NameOf(frame, photos, folder);
+      const std::string name = NameOf(frame, photos, folder, model.names_all_photos);
       if (model.names_all_photos && !photos.Has(name)) {
         frame.Fail("is of the picture " + name + ", which is not among the photos in " + photos.root().string(),
                    "Unpack all pictures of the data set where the file says, or remove the frame. survey/input.csv says which pictures were left out "

@@ -23,6 +23,8 @@ RUN = ["--blocks", "1x1", "--image-width", "0", "--steps", "250", "--brightness"
 FAKE_TORCH = """
 import pickle
 
+__version__ = "stand-in"
+
 class Tensor(list):
     def tolist(self):
         return list(self)

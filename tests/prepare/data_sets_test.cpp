@@ -204,7 +204,7 @@ TEST_F(DataSets, MatrixCityIsPreparedInMetres) {
   const survey::Survey survey = Prepare({set.photo_root, set.model, folder_ / "out"}, {}, threads_);
   EXPECT_FALSE(survey.georeferenced);
   ExpectRaysOfSurvey(survey, set, 100.0);
-  EXPECT_EQ(survey.fit.scale, 100.0);
+  EXPECT_NEAR(survey.fit.scale, 100.0, 1e-9);
   EXPECT_TRUE(survey.unregistered.empty());
 }
 

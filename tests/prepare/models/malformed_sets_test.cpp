@@ -106,13 +106,19 @@ TEST_F(MalformedSet, SmallerPicturesThatCannotBeMatched) {
   }
 }
 
+// Also where another part has a picture of the same name.
 TEST_F(MalformedSet, PicturesThatAreNotThere) {
   const test::MadeSet blender = test::MakeBlender(folder_ / "lego"), city = test::MakeMatrixCitySplit(folder_ / "city");
-  for (const auto& [set, file] : {std::pair{blender, "transforms_test.json"}, std::pair{city, "transforms_test.json"}}) {
-    std::vector<std::string> names = set.names;
-    names.erase(std::find(names.begin(), names.end(), set.test.back()));
-    const std::string message = InputErrorOf([&, &set = set] { ReadModel(set.model, ModelPhotos(set.photo_root, names)); });
-    for (const std::string& part : {std::string(file), std::string("line "), "picture " + set.test.back(), std::string("Unpack all pictures")}) {
+  struct Case {
+    const test::MadeSet* set;
+    const char *missing, *named;
+  };
+  for (const Case& one : {Case{&blender, "test/r_1.png", "picture test/r_1, which is not among the photos in "},
+                          Case{&city, "test/block_1_test/0003.png", "picture ../../test/block_1_test/0003.png, which is not among the photos in "}}) {
+    std::vector<std::string> names = one.set->names;
+    ASSERT_EQ(std::erase(names, one.missing), 1U);
+    const std::string message = InputErrorOf([&] { ReadModel(one.set->model, ModelPhotos(one.set->photo_root, names)); });
+    for (const char* part : {"transforms_test.json", "line ", one.named, "Unpack all pictures"}) {
       EXPECT_NE(message.find(part), std::string::npos) << part << ": " << message;
     }
   }

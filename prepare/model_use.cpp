@@ -58,8 +58,9 @@ std::optional<Eigen::Vector3d> UpByModel(const models::InputModel& model, const 
 
 std::vector<georeference::ScaleBar> BarsByModel(const models::InputModel& model) {
   if (!model.metres_per_unit) return {};
+  base::LogInfo("the camera model says that its unit is {:g} m; this counts as a scale bar", *model.metres_per_unit);
   const Eigen::Vector3d origin = Eigen::Vector3d::Zero(), unit = Eigen::Vector3d::UnitX();
-  return {{.a = "unit of the camera model", .b = "as it says", .length_m = *model.metres_per_unit, .at_a = origin, .at_b = unit}};
+  return {{.a = "0;0;0", .b = "1;0;0", .length_m = *model.metres_per_unit, .at_a = origin, .at_b = unit}};
 }
 
 void PlaceByModel(const models::ModelPlace& place, std::vector<input::PreparedPhoto>& photos) {

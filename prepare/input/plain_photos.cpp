@@ -290,10 +290,12 @@ bool IsMade(const fs::path& copies, const std::string& asked, const PhotoSet& ph
 std::string DescribeSources(const std::vector<PhotoSource>& sources) {
   int most_bits = 8;
   size_t n_floating = 0, n_several = 0, n_developed = 0, n_filled = 0;
+  bool white = false;
   for (const PhotoSource& source : sources) {
     n_developed += source.develop ? 1 : 0;
     most_bits = std::max(most_bits, source.format.bits);
     n_filled += source.background ? 1 : 0;
+    white = white || source.background == 255;
     n_floating += source.format.floating ? 1 : 0;
     if (source.background) continue;
     n_several += source.format.bands > 3 ? 1 : 0;
@@ -301,7 +303,7 @@ std::string DescribeSources(const std::vector<PhotoSource>& sources) {
   std::string text = fmt::format("{} photos of up to {} bits", sources.size(), most_bits);
   if (n_developed > 0) text += fmt::format(", {} of HEIC or raw files, which are developed", n_developed);
   if (n_floating > 0) text += fmt::format(", {} of floating point", n_floating);
-  if (n_filled > 0) text += fmt::format(", {} with transparency, which are shown over what prepare.alpha says", n_filled);
+  if (n_filled > 0) text += fmt::format(", {} with transparency, shown over {}", n_filled, white ? kOverWhite : "black");
   if (n_several > 0) {
     std::vector<std::string> bands;
     for (const int band : sources.front().bands) bands.push_back(std::to_string(band));

@@ -2,6 +2,7 @@
 """SSIM of two pictures in the ways that are in use: figures of different programs cannot be compared without knowing by how much these differ.
 
   /usr/bin/python3 scripts/compare_ssim.py                        the pictures of tests/core/metrics/ssim_test.cpp
+  /usr/bin/python3 scripts/compare_ssim.py photo.png              a picture and itself at half its size, enlarged again: sharp and blurred
   /usr/bin/python3 scripts/compare_ssim.py photo.png render.png   two pictures of one size
 
 Needs NumPy and scikit-image (Debian: apt-get install python3-skimage), whose own function gives the rows of its name. torchmetrics is no package of Debian:
@@ -41,6 +42,14 @@ def made_pictures():
     return picture(1, False), picture(2, True)
 
 
+def blurred(picture):
+    """Means of 2 x 2 pixels, each four times; an odd row or column at the end is left out of both."""
+    height, width = picture.shape[0] // 2 * 2, picture.shape[1] // 2 * 2
+    sharp = picture[:height, :width]
+    means = sharp.reshape(height // 2, 2, width // 2, 2, -1).mean((1, 3))
+    return sharp, np.rint(means).astype(np.uint8).repeat(2, 0).repeat(2, 1)
+
+
 def gaussian():
     weights = np.exp(-0.5 * (np.arange(-HALF, HALF + 1) / 1.5) ** 2)
     return weights / weights.sum()
@@ -66,11 +75,12 @@ def ssim(a, b, pad=None):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("pictures", nargs="*", help="two pictures; none: made ones")
+    parser.add_argument("pictures", nargs="*", help="one or two pictures; none: made ones")
     files = parser.parse_args().pictures
-    if len(files) not in (0, 2):
-        parser.error("give two pictures, or none")
-    a, b = [io.imread(file)[..., :3] for file in files] if files else made_pictures()
+    if len(files) > 2:
+        parser.error("give no more than two pictures")
+    given = [io.imread(file)[..., :3] for file in files]
+    a, b = given if len(given) == 2 else blurred(given[0]) if given else made_pictures()
     if a.shape != b.shape or a.dtype != np.uint8 or b.dtype != np.uint8 or a.ndim != 3:
         parser.error("the pictures must have one size, three channels and 8 bits")
     a, b = a / 255.0, b / 255.0

@@ -321,10 +321,17 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   base::RequireWritableFolder(input.out_folder);
 
   std::vector<input::InputFile> files = ListFiles(input, options, folders, threads);
+  models::InputModel input_model;
+  const bool own_poses = folders.model.empty();
+  if (!own_poses) {
+    input_model = models::ReadModel(folders.model, models::ModelPhotos(folders.photo_root, input::TakenNames(files)));
+    LeaveOutUnnamed(input_model, files);
+  }
   const std::vector<std::string> names = input::TakenNames(files);
   input::PhotoSet photos = input::ReadPhotos(folders.photo_root, names, threads);
   // The pictures that all others read, under the same names.
-  const fs::path picture_root = input::MakePlainPhotos(folders.photo_root, options.bands, input.out_folder / "photos_8bit", photos, threads);
+  const fs::path picture_root =
+      input::MakePlainPhotos(folders.photo_root, options.bands, options.alpha, input.out_folder / "photos_8bit", photos, threads);
   georeference::UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
   georeference::LogUnfilledTags(options.flight_gap_s, photos.usable);
   georeference::TurnPitchesThatLookUp(photos.usable);
@@ -334,18 +341,16 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   input::WriteInputTable(files, input.out_folder / kInputTable);
   // Faults of these files are told before the long search for poses.
   const control::ControlPoints control_points = georeference::ReadControlPoints(ControlFilesOf(options), photos.usable);
-  const std::vector<georeference::ScaleBar> bars = georeference::ParseScaleBars(options.scale_bars);
+  const std::vector<georeference::ScaleBar> bars =
+      options.scale_bars.empty() ? BarsByModel(input_model) : georeference::ParseScaleBars(options.scale_bars);
   const control::ControlPoints bar_marks = georeference::ReadScaleMarks(bars, ControlFilesOf(options), control_points, photos.usable);
   base::ThrowIfCancelled();
 
-  models::InputModel input_model;
-  const bool own_poses = folders.model.empty();
   if (own_poses) {
     const poses::ColmapJob job{picture_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
     folders.model = poses::RunColmap(job, photos.usable, PoseOptionsOf(options), threads, ranks);
     input_model.sfm = survey::ReadColmapModel(folders.model);
   } else {
-    input_model = models::ReadModel(folders.model, models::ModelPhotos(folders.photo_root, names));
     WarnOfPosesLeftOut(input_model.sfm, files);
   }
   const bool has_observations = !folders.exact_origin && input_model.format == models::ModelFormat::kColmap;
@@ -372,7 +377,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   points.reserve(model.points.size());
   for (const survey::ColmapPoint& point : model.points) points.push_back(point.x_in_world);
   georeference::PlaceOptions place_options = PlaceOptionsOf(options);
-  place_options.up = georeference::StatedUp(options.up, prepared);
+  place_options.up = options.up.empty() ? UpByModel(input_model, prepared) : georeference::StatedUp(options.up, prepared);
   if (place_options.up && folders.exact_origin) base::LogWarning("prepare.up changes nothing, because the frame of this simulation is exact");
   georeference::Georeference georeference = folders.exact_origin ? georeference::KeepExactFrame(prepared, *folders.exact_origin, place_options)
                                                                  : georeference::PlaceOnEarth(prepared, points, place_options);

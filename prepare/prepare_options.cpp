@@ -49,6 +49,10 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"masks", &O::masks, Range(),
        "folder of masks named PHOTO.jpg.png, or one mask for all photos; 0 = ignore; empty: those in and beside the photo folder by their names, and "
        "the photos' alpha; none: no masks"},
+      {"alpha", &O::alpha, Range::OneOf({"mask", "white", "black"}),
+       "what transparency in photos (PNG, TIFF) means. mask: transparent pixels are ignored; white, black: the photos are shown over white or black, "
+       "as "
+       "published results on synthetic scenes are"},
       {"geo_file", &O::geo_file, Range(),
        "OpenDroneMap's table of photo positions in any coordinate system; empty: geo.txt in the photo folder, or beside it when that is called "
        "images"},

@@ -30,6 +30,7 @@ struct PrepareOptions {
   double video_clock_offset_s = 0.0;
   std::string bands;
   std::string masks;
+  std::string alpha = "mask";
   std::string geo_file;
   std::string gcp;
   std::string gcp_marks;

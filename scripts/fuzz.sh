@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 seconds=${1:-60}
 [[ "$seconds" =~ ^[1-9][0-9]*$ ]] || { echo "usage: scripts/fuzz.sh [SECONDS] [TARGET...]" >&2; exit 2; }
 targets=("${@:2}")
-(( ${#targets[@]} > 0 )) || targets=(colmap config blocks archive exif viewer tour transforms opensfm metashape opf positions text_table picture_header pixels
+(( ${#targets[@]} > 0 )) || targets=(colmap config blocks archive exif viewer tour transforms opensfm metashape opf poses_bounds positions text_table picture_header pixels
   gcp_list opensfm_control point_table metashape_markers)
 scripts/setup.sh
 cmake -S . -B build/fuzz -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ -DSKYQUILT_FUZZ=ON -DSKYQUILT_UNITY=ON -DSKYQUILT_PCH=ON \

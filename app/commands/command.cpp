@@ -109,10 +109,10 @@ void AddDurationFlag(CLI::App& command, const Overrides& overrides, const std::s
 
 void AddModelFlag(CLI::App& command, std::string& model) {
   command
-      .add_option(
-          "--model", model,
-          "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape) or .opf (Pix4D); "
-          "without it COLMAP is run")
+      .add_option("--model", model,
+                  "camera model of the photos: COLMAP folder, transforms.json, reconstruction.json (OpenSfM), cameras.xml (Metashape), .opf (Pix4D) "
+                  "or poses_bounds.npy (LLFF); "
+                  "without it COLMAP is run")
       ->type_name("PATH");
 }
 

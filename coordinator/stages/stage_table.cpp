@@ -72,7 +72,8 @@ const std::vector<std::string>& VideoOptionNames() {
   return names;
 }
 
-// Files that only some surveys have count where they are, and the poses of held-out photos and the bands where they are not the default, so that
+// Files that only some surveys have count where they are, and the poses of held-out photos, the bands and what transparency means where
+// they are not the default, so that
 // records of older programs stay valid.
 FlatOptions PrepareInputs(const Pipeline& pipeline) {
   FlatOptions inputs{{"photos", pipeline.photos.string()}, {"model", pipeline.model.string()}};
@@ -106,6 +107,7 @@ FlatOptions PrepareInputs(const Pipeline& pipeline) {
   const std::string masks = MasksIdentity(pipeline);
   if (!masks.empty()) inputs["masks"] = masks;
   if (!options.bands.empty()) inputs["prepare.bands"] = options.bands;
+  if (options.alpha != prepare::PrepareOptions().alpha) inputs["prepare.alpha"] = options.alpha;
   return inputs;
 }
 
@@ -241,8 +243,8 @@ std::vector<Stage> MakeTable() {
        .dated = false},
       {.name = "prepare",
        .options = {"prepare."},
-       .ignored_options = {"prepare.holdout_poses", "prepare.bands", "prepare.photos", "prepare.video_overlap", "prepare.video_limit",
-                           "prepare.video_size", "prepare.video_clock_offset_s"},  // inputs
+       .ignored_options = {"prepare.holdout_poses", "prepare.alpha", "prepare.bands", "prepare.photos", "prepare.video_overlap",
+                           "prepare.video_limit", "prepare.video_size", "prepare.video_clock_offset_s"},  // inputs
        .inputs = PrepareInputs,
        .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
        .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <mutex>
@@ -11,6 +12,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/image/fill_alpha.h"
 #include "core/image/image.h"
 #include "core/image/jpeg_structure.h"
 #include "core/image/pixel_format.h"
@@ -133,6 +135,24 @@ Image8 ToRgb8(cv::Mat pixels, const std::filesystem::path& file) {
 
 Image8 LoadRgb8(const std::filesystem::path& file) {
   return ToRgb8(Decode(base::ReadFile(file), file), file);
+}
+
+Image8 LoadRgb8Over(const std::filesystem::path& file, uint8_t background) {
+  const cv::Mat pixels = Decode(base::ReadFile(file), file);
+  if (pixels.channels() != 4 || (pixels.depth() != CV_8U && pixels.depth() != CV_16U)) return ToRgb8(pixels, file);
+  const double largest = pixels.depth() == CV_8U ? 255.0 : 65535.0;
+  Image8 image(pixels.cols, pixels.rows, 3);
+  cv::Mat row;
+  for (int y = 0; y < image.height; ++y) {
+    pixels.row(y).convertTo(row, CV_64F, 1.0 / largest);
+    const auto* bgra = row.ptr<cv::Vec4d>();
+    uint8_t* out = image.At(0, y);
+    for (int x = 0; x < image.width; ++x) {
+      const double alpha = bgra[x][3];
+      for (int c = 2; c >= 0; --c) *out++ = static_cast<uint8_t>(std::lround(255.0 * bgra[x][c] * alpha + background * (1.0 - alpha)));
+    }
+  }
+  return image;
 }
 
 Image8 LoadReducedRgb8(const std::filesystem::path& file, int width) {

@@ -79,6 +79,35 @@ Json TimesJson(const RunTimes& times) {
   return {{"within_s", times.within_s}, {"used_s", times.used_s}, {"stages", stages}, {"given_up", times.given_up}};
 }
 
+// Which of the ways that are in use a figure was computed by, so that it can be set beside published ones.
+constexpr const char* kPsnrVariant =
+    "per photo 10 log10(1 / mean squared error) over all its pixels that no mask excludes and all three channels, of stored (sRGB) values divided by "
+    "255, renderings clamped to [0, 1] and not rounded; mean over the photos";
+constexpr const char* kSsimVariant =
+    "Gaussian window 11 x 11, sigma 1.5, K1 = 0.01, K2 = 0.03, data range 1, weighted (population) variances, mean over channels, over the pixels "
+    "whose "
+    "window lies inside the picture, and over the photos";
+
+// Whole frames alone: coverage is an own idea of this program.
+Json AsPublishedJson(const Metrics& metrics) {
+  int64_t used = 0, all = 0;
+  for (const photos::PhotoScore& photo : metrics.photos) {
+    used += photo.used_pixels;
+    all += int64_t{photo.width} * photo.height;
+  }
+  const photos::PhotoScore first = metrics.photos.empty() ? photos::PhotoScore() : metrics.photos.front();
+  return {{"psnr", NumberOrNull(metrics.psnr_full_frame)},
+          {"psnr_variant", kPsnrVariant},
+          {"ssim", NumberOrNull(metrics.ssim_full_frame)},
+          {"ssim_variant", kSsimVariant},
+          {"lpips", NumberOrNull(metrics.lpips)},
+          {"lpips_variant", metrics.lpips_note},
+          {"photos", metrics.photos.size()},
+          {"width", first.width},
+          {"height", first.height},
+          {"unmasked_share", NumberOrNull(all > 0 ? static_cast<double>(used) / static_cast<double>(all) : kNotMeasured)}};
+}
+
 void PutNumbers(std::span<const KeyedNumber> numbers, const Metrics& metrics, Json* json) {
   for (const auto& [key, member] : numbers) (*json)[key] = NumberOrNull(metrics.*member);
 }
@@ -98,6 +127,7 @@ std::string MetricsJson(const Metrics& metrics) {
   Json json;
   PutNumbers(kScores, metrics, &json);
   json["lpips_note"] = metrics.lpips_note;
+  json["as_published"] = AsPublishedJson(metrics);
   json["psnr_per_image"] = Json::object();
   for (const photos::PhotoScore& photo : metrics.photos) json["psnr_per_image"][photo.name] = NumberOrNull(photo.psnr_db);
   json["psnr_per_block"] = Json::object();

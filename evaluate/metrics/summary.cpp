@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/file.h"
+#include "core/base/sha256.h"
 #include "core/base/system.h"
 #include "evaluate/metrics/warnings.h"
 
@@ -86,6 +88,12 @@ void AddSurveyFacts(const survey::Survey& survey, Metrics* metrics) {
   metrics->resected_holdout = survey.resected_holdout;
 }
 
+// Two networks may be called the same.
+std::string LpipsNote(const std::filesystem::path& network) {
+  if (network.empty()) return "not measured: evaluate.lpips_network is not set";
+  return "full frame, network " + network.filename().string() + ", SHA-256 " + base::Sha256Hex(base::ReadFile(network));
+}
+
 }  // namespace
 
 void Scores::Add(const photos::ScoredPhoto& photo) {
@@ -155,7 +163,7 @@ Metrics MetricsBeforeScoring(const EvaluateInput& input) {
   metrics.parameters = info.parameters;
   metrics.config = input.config_text.empty() ? info.config : input.config_text;
   metrics.gsd_m = info.gsd_m > 0.0 ? info.gsd_m : kNotMeasured;
-  metrics.lpips_note = network.empty() ? "not measured: evaluate.lpips_network is not set" : "full frame, network " + network.filename().string();
+  metrics.lpips_note = LpipsNote(network);
   metrics.machine = base::MachineDescription();
   metrics.date = base::UtcTimestamp();
   return metrics;

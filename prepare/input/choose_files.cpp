@@ -156,8 +156,8 @@ class Chooser {
 
   static bool IsModelName(const std::string& file_name) {
     const std::string name = base::LowerCase(file_name);
-    return name == "transforms.json" || name == "transforms_train.json" || name == "reconstruction.json" || name == "cameras.xml" ||
-           name.ends_with(".opf");
+    return name == "transforms.json" || name == "transforms_train.json" || name == "poses_bounds.npy" || name == "reconstruction.json" ||
+           name == "cameras.xml" || name.ends_with(".opf");
   }
 
   // The images/ of a project are copies when photos lie around the project or have the same names.

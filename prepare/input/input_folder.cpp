@@ -43,6 +43,8 @@ std::string UnusedModelText(const fs::path& model) {
       return "a reconstruction.json (OpenSfM, OpenDroneMap)";
     case models::ModelFormat::kMetashape:
       return "cameras of Metashape";
+    case models::ModelFormat::kPosesBounds:
+      return "a poses_bounds.npy (LLFF)";
     case models::ModelFormat::kOpf:
       break;
   }
@@ -92,12 +94,13 @@ void ReadSimulated(const fs::path& folder, bool own_model, InputFolder& found) {
 std::vector<fs::path> ModelsIn(const fs::path& folder) {
   std::vector<fs::path> models;
   std::error_code ignored;
-  for (const char* name : {"sparse/0", "transforms.json", "transforms_train.json", "reconstruction.json", "opensfm/reconstruction.json"}) {
+  for (const char* name :
+       {"sparse/0", "transforms.json", "transforms_train.json", "poses_bounds.npy", "reconstruction.json", "opensfm/reconstruction.json"}) {
     const fs::path model = folder / name;
     if (!fs::exists(model, ignored)) continue;
     const bool is_split = model.filename() == "transforms_train.json";
-    if (is_split && fs::exists(folder / "transforms.json", ignored)) continue;
-    models.push_back(is_split ? folder : model);
+    if (model.filename() == "poses_bounds.npy" && fs::exists(folder / "sparse" / "0", ignored)) continue;  // made from it
+    models.push_back(is_split && !fs::exists(folder / "transforms.json", ignored) ? folder : model);
   }
   std::vector<fs::path> others;
   for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored)) {
@@ -119,9 +122,10 @@ InputFolder FindInputs(const fs::path& photos, const fs::path& model, const std:
   const bool simulated = fs::exists(folder / "simulate.json");
   if (fs::is_directory(folder / "images") && (simulated || !HoldsPhotosDirectly(folder))) found.photo_root = folder / "images";
 
-  // Around the photos: beside images/, too, when that itself was given.
+  // Around the photos: beside images/ (or images_4/), too, when that itself was given.
   std::vector<fs::path> nearby = ModelsIn(found.photo_root);
-  if (found.photo_root != folder || folder.filename() == "images") {
+  const std::string own_name = folder.filename().string();
+  if (found.photo_root != folder || own_name == "images" || own_name.starts_with("images_")) {
     const std::vector<fs::path> beside = ModelsIn(found.photo_root.parent_path());
     nearby.insert(nearby.end(), beside.begin(), beside.end());
   }

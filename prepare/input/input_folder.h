@@ -25,8 +25,8 @@ struct InputFolder {
 // for a missing folder, a model of an unknown format or a damaged simulate.json.
 InputFolder FindInputs(const std::filesystem::path& photos, const std::filesystem::path& model, const std::string& masks);
 
-// Camera models that lie in a folder: sparse/0 of COLMAP, transforms.json or transforms_train.json, reconstruction.json (also in opensfm/), .opf, a
-// Metashape .xml; in this order.
+// Camera models that lie in a folder: sparse/0 of COLMAP, transforms.json or transforms_train.json, poses_bounds.npy without
+// sparse/0, reconstruction.json (also in opensfm/), .opf, a Metashape .xml; in this order.
 std::vector<std::filesystem::path> ModelsIn(const std::filesystem::path& folder);
 
 }  // namespace skyquilt::prepare::input

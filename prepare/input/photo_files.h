@@ -16,6 +16,7 @@ struct PhotoFile {
   int height = 0;
   survey::PhotoTags tags = {};
   bool converted = false;  // COLMAP reads a copy of 8 bits without these tags (plain_photos.h)
+  bool filled = false;     // that copy has no transparency any more (prepare.alpha)
   std::string mask = {};   // path of its mask (masks/masks.h); empty: none
 };
 

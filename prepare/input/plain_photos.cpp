@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <utility>
@@ -16,9 +17,11 @@
 #include "core/base/text.h"
 #include "core/gis/photo_bands.h"
 #include "core/image/develop.h"
+#include "core/image/fill_alpha.h"
 #include "core/image/image.h"
 #include "core/image/pixel_format.h"
 #include "prepare/input/band_choice.h"
+#include "prepare/input/picture_header.h"
 #include "prepare/input/white_level.h"
 
 namespace skyquilt::prepare::input {
@@ -36,14 +39,17 @@ constexpr double kAboveRange = 1e-5;
 constexpr size_t kMostSampled = size_t{1} << 20U;
 constexpr int kRowsAtOnce = 128;
 constexpr int kPngLevel = 1;
+// prepare.alpha
+constexpr const char *kAsMask = "mask", *kOverWhite = "white";
 
 // A photo to convert.
 struct PhotoSource {
   size_t photo = 0;  // index into the usable photos
   image::PixelFormat format;
-  std::vector<int> bands;  // as read: for CMYK all four
-  std::string problem;     // not empty: it is left out
-  bool develop = false;    // HEIC or raw: no bands are chosen
+  std::vector<int> bands;                  // as read: for CMYK all four
+  std::string problem;                     // not empty: it is left out
+  bool develop = false;                    // HEIC or raw: no bands are chosen
+  std::optional<uint8_t> background = {};  // shown over this; no bands are chosen
   PhotoRange range;
 };
 
@@ -105,8 +111,10 @@ image::Image8 Converted(const gis::PhotoBands& file, const PhotoSource& source, 
   return image;
 }
 
-std::string StampOf(const fs::path& photo_root, const std::string& bands, const std::vector<PhotoSource>& sources, const PhotoSet& photos) {
+std::string StampOf(const fs::path& photo_root, const std::string& bands, const std::string& alpha, const std::vector<PhotoSource>& sources,
+                    const PhotoSet& photos) {
   std::string text = "photos converted to 8 bits, form 1\nbands " + bands + "\n" + photo_root.string() + "\n";
+  if (alpha != kAsMask) text += "alpha " + alpha + "\n";
   size_t next = 0;
   for (size_t i = 0; i < photos.usable.size(); ++i) {
     const bool converted = next < sources.size() && sources[next].photo == i;
@@ -129,17 +137,32 @@ std::vector<image::PixelFormat> ReadFormats(const fs::path& photo_root, const Ph
   return formats;
 }
 
-// Photos that are not plain, and those that the option is about.
-std::vector<PhotoSource> FindSources(const PhotoSet& photos, const std::vector<image::PixelFormat>& formats, const std::string& bands) {
+bool HasAlpha(const fs::path& photo, const image::PixelFormat& format) {
+  return (format.kind == image::FileKind::kPng || format.kind == image::FileKind::kTiff) && ReadPictureHeader(photo).has_alpha;
+}
+
+// Photos that are not plain, and those that the options are about.
+std::vector<PhotoSource> FindSources(const fs::path& photo_root, const PhotoSet& photos, const std::vector<image::PixelFormat>& formats,
+                                     const std::string& bands, const std::string& alpha) {
   std::vector<PhotoSource> sources;
   for (size_t i = 0; i < formats.size(); ++i) {
     if (image::NeedsDeveloping(photos.usable[i].name)) {
-      sources.push_back({.photo = i, .format = {}, .bands = {}, .problem = {}, .develop = true, .range = {}});
+      sources.push_back({.photo = i, .format = {}, .bands = {}, .problem = {}, .develop = true, .background = {}, .range = {}});
+      continue;
+    }
+    if (alpha != kAsMask && HasAlpha(photo_root / photos.usable[i].name, formats[i])) {
+      sources.push_back({.photo = i,
+                         .format = formats[i],
+                         .bands = {},
+                         .problem = {},
+                         .develop = false,
+                         .background = static_cast<uint8_t>(alpha == kOverWhite ? 255 : 0),
+                         .range = {}});
       continue;
     }
     const bool chosen = !bands.empty() && formats[i].kind == image::FileKind::kTiff && formats[i].bands > 1;
     if (image::IsPlain(formats[i]) && !chosen) continue;
-    sources.push_back({.photo = i, .format = formats[i], .bands = {}, .problem = {}, .develop = false, .range = {}});
+    sources.push_back({.photo = i, .format = formats[i], .bands = {}, .problem = {}, .develop = false, .background = {}, .range = {}});
   }
   return sources;
 }
@@ -266,16 +289,21 @@ bool IsMade(const fs::path& copies, const std::string& asked, const PhotoSet& ph
 // For the log: how many photos have which bands, of how many bits.
 std::string DescribeSources(const std::vector<PhotoSource>& sources) {
   int most_bits = 8;
-  size_t n_floating = 0, n_several = 0, n_developed = 0;
+  size_t n_floating = 0, n_several = 0, n_developed = 0, n_filled = 0;
+  bool white = false;
   for (const PhotoSource& source : sources) {
     n_developed += source.develop ? 1 : 0;
     most_bits = std::max(most_bits, source.format.bits);
+    n_filled += source.background ? 1 : 0;
+    white = white || source.background == 255;
     n_floating += source.format.floating ? 1 : 0;
+    if (source.background) continue;
     n_several += source.format.bands > 3 ? 1 : 0;
   }
   std::string text = fmt::format("{} photos of up to {} bits", sources.size(), most_bits);
   if (n_developed > 0) text += fmt::format(", {} of HEIC or raw files, which are developed", n_developed);
   if (n_floating > 0) text += fmt::format(", {} of floating point", n_floating);
+  if (n_filled > 0) text += fmt::format(", {} with transparency, shown over {}", n_filled, white ? kOverWhite : "black");
   if (n_several > 0) {
     std::vector<std::string> bands;
     for (const int band : sources.front().bands) bands.push_back(std::to_string(band));
@@ -286,10 +314,11 @@ std::string DescribeSources(const std::vector<PhotoSource>& sources) {
 
 }  // namespace
 
-fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, const fs::path& folder, PhotoSet& photos, base::ThreadPool& threads) {
+fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, const std::string& alpha, const fs::path& folder, PhotoSet& photos,
+                         base::ThreadPool& threads) {
   const std::vector<image::PixelFormat> formats = ReadFormats(photo_root, photos, threads);
   LogGrey(formats);
-  std::vector<PhotoSource> sources = FindSources(photos, formats, bands);
+  std::vector<PhotoSource> sources = FindSources(photo_root, photos, formats, bands, alpha);
   if (sources.empty()) {
     if (!bands.empty()) base::LogWarning("prepare.bands = \"{}\" has no effect: no photo is a TIFF of several bands", bands);
     fs::remove_all(folder);
@@ -297,9 +326,12 @@ fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, c
   }
   const fs::path copies = fs::absolute(folder);
   const auto mark = [&] {
-    for (const PhotoSource& source : sources) photos.usable[source.photo].converted = true;
+    for (const PhotoSource& source : sources) {
+      photos.usable[source.photo].converted = true;
+      photos.usable[source.photo].filled = source.background.has_value();
+    }
   };
-  const std::string asked = StampOf(photo_root, bands, sources, photos);
+  const std::string asked = StampOf(photo_root, bands, alpha, sources, photos);
   if (IsMade(copies, asked, photos, sources)) {
     LeaveOutProblems(photo_root, sources, photos);
     base::LogInfo("{} of {} photos are already converted to 8 bits, in {}", sources.size(), photos.usable.size(), copies.string());
@@ -311,14 +343,14 @@ fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, c
   std::string left_out;
   ForSources(sources, "read range of photos", threads, [&](PhotoSource& source) {
     const PhotoFile& photo = photos.usable[source.photo];
-    if (source.develop) return;
+    if (source.develop || source.background) return;
     ChooseBandsOf(photo_root / photo.name, photo.tags.band_names, bands, source);
   });
   NoteLeftOut(sources, photos, left_out);
   LeaveOutProblems(photo_root, sources, photos);
 
   // Whole numbers of 8 bits are not scaled.
-  const auto is_deep = [](const PhotoSource& source) { return source.format.floating || source.format.bits > 8; };
+  const auto is_deep = [](const PhotoSource& source) { return !source.background && (source.format.floating || source.format.bits > 8); };
   std::vector<PhotoRange> deep;
   for (const PhotoSource& source : sources) {
     if (is_deep(source)) deep.push_back(source.range);
@@ -338,6 +370,10 @@ fs::path MakePlainPhotos(const fs::path& photo_root, const std::string& bands, c
         throw base::InputError(photo_root / name, "is developed to another size than it says", "Export it as JPEG or TIFF");
       }
       base::WriteFileAtomically(copies / name, image::EncodePng(developed, kPngLevel));
+      return;
+    }
+    if (source.background) {
+      base::WriteFileAtomically(copies / name, image::EncodePng(image::LoadRgb8Over(photo_root / name, *source.background), kPngLevel));
       return;
     }
     const image::Image8 image = Converted(gis::PhotoBands(photo_root / name), source, is_deep(source) ? white.value : 255.0);

@@ -22,13 +22,15 @@ std::string FormatName(ModelFormat format) {
       return "a Metashape cameras.xml";
     case ModelFormat::kOpf:
       return "a Pix4D project (OPF)";
+    case ModelFormat::kPosesBounds:
+      return "a poses_bounds.npy (LLFF)";
   }
   return "";
 }
 
 ModelPhotos::ModelPhotos(fs::path root, const std::vector<std::string>& names) : root_(std::move(root)), names_(names), finder_(names) {}
 
-std::string ModelPhotos::Resolve(const std::string& label, const fs::path& model_folder) const {
+std::optional<std::string> ModelPhotos::FindPath(const std::string& label, const fs::path& model_folder) const {
   const std::string clean = PhotoNames::Cleaned(label);
   if (finder_.FindPath(clean)) return clean;
   std::error_code ignored;
@@ -39,6 +41,12 @@ std::string ModelPhotos::Resolve(const std::string& label, const fs::path& model
       if (finder_.FindPath(name)) return name;
     }
   }
+  return std::nullopt;
+}
+
+std::string ModelPhotos::Resolve(const std::string& label, const fs::path& model_folder) const {
+  if (std::optional<std::string> found = FindPath(label, model_folder)) return *std::move(found);
+  const std::string clean = PhotoNames::Cleaned(label);
   const std::optional<size_t> same = finder_.FindFileName(clean);
   return same ? names_[*same] : clean;
 }

@@ -14,7 +14,7 @@
 
 namespace skyquilt::prepare::models {
 
-enum class ModelFormat { kColmap, kTransforms, kOpensfm, kMetashape, kOpf };
+enum class ModelFormat { kColmap, kTransforms, kOpensfm, kMetashape, kOpf, kPosesBounds };
 
 // As in "a Metashape cameras.xml".
 std::string FormatName(ModelFormat format);
@@ -31,6 +31,11 @@ struct InputModel {
   survey::ColmapModel sfm;  // ids of images and cameras are ours, except for COLMAP; points may have no track (image_ids) or be missing altogether
   std::optional<ModelPlace> place;
   std::set<std::string> test_photos;  // names in sfm.images that the model holds out of training; empty when it says nothing
+  std::string set;                    // the published data set whose form it has, for messages; empty: none
+  // What the format says of its frame where it does not say its place: the direction of up, and the length of its unit.
+  std::optional<Eigen::Vector3d> up;
+  std::optional<double> metres_per_unit;
+  bool names_all_photos = false;  // pictures that it does not name are none of its photos: depths and normals beside them, other parts of a city
 };
 
 // The photos that the user gave: names of a model are matched with them, and their sizes fill in what a model does not say.
@@ -39,11 +44,16 @@ class ModelPhotos {
   // names: relative to root, '/' separated.
   ModelPhotos(std::filesystem::path root, const std::vector<std::string>& names);
 
-  // The name among the photos that a model means by `label`: the same path; a file below the model's folder; PhotoNames::FindFileName. Otherwise the
-  // label itself, cleaned: a photo that is not there.
+  // The name among the photos that a model means by `label`: the same path, or a file below the model's folder. Nothing when there is no such photo.
+  std::optional<std::string> FindPath(const std::string& label, const std::filesystem::path& model_folder) const;
+  // The same, else PhotoNames::FindFileName. Otherwise the label itself, cleaned: a photo that is not there.
   std::string Resolve(const std::string& label, const std::filesystem::path& model_folder) const;
   // Width and height as stored; nothing when there is no such photo or it cannot be read.
   std::optional<Eigen::Vector2i> SizeOf(const std::string& name) const;
+  bool Has(const std::string& name) const { return finder_.FindPath(name).has_value(); }
+
+  const std::filesystem::path& root() const { return root_; }
+  const std::vector<std::string>& names() const { return names_; }  // in the order in which they were given
 
  private:
   std::filesystem::path root_;

@@ -11,6 +11,8 @@
 #include "prepare/models/metashape_xml.h"
 #include "prepare/models/opensfm_json.h"
 #include "prepare/models/opf_json.h"
+#include "prepare/models/poses_bounds.h"
+#include "prepare/models/reduced_pictures.h"
 #include "prepare/models/transforms_json.h"
 
 namespace skyquilt::prepare::models {
@@ -23,7 +25,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFormats =
     "Give a COLMAP folder (cameras, images and points3D, usually sparse/0), a transforms.json, an OpenSfM or OpenDroneMap reconstruction.json, a "
-    "Metashape cameras.xml or a Pix4D .opf";
+    "Metashape cameras.xml, a Pix4D .opf or the poses_bounds.npy of LLFF";
+
+constexpr const char* kTrainName = "transforms_train.json";
 
 std::string ExtensionOf(const fs::path& file) {
   return base::LowerCase(file.extension().string());
@@ -56,6 +60,7 @@ ModelFiles FindModelFile(const fs::path& file) {
   const std::string extension = ExtensionOf(file);
   if (extension == ".opf") return {ModelFormat::kOpf, file};
   if (extension == ".json") return {FormatOfJson(file), file};
+  if (extension == ".npy") return {ModelFormat::kPosesBounds, file};
   if (extension == ".xml") {
     if (!LooksLikeMetashape(file)) throw base::InputError(file, "line 1: is not an XML file of Metashape's cameras", kFormats);
     return {ModelFormat::kMetashape, file};
@@ -67,11 +72,15 @@ ModelFiles FindModelFile(const fs::path& file) {
   throw base::InputError(file, "is not a camera model that is known", kFormats);
 }
 
-std::vector<TransformsFile> SplitFiles(const fs::path& folder) {
+// The file, or those of its folder's split.
+std::vector<TransformsFile> FilesOfTransforms(const fs::path& path) {
+  const bool is_folder = fs::is_directory(path);
+  if (!is_folder && path.filename() != kTrainName) return {{path, TransformsPart::kWhole}};
+  const fs::path folder = is_folder ? path : path.parent_path();
   std::vector<TransformsFile> files;
-  for (const auto& [name, is_test] : std::array<std::pair<const char*, bool>, 3>{
-           {{"transforms_train.json", false}, {"transforms_val.json", true}, {"transforms_test.json", true}}}) {
-    if (fs::exists(folder / name)) files.push_back({folder / name, is_test});
+  for (const auto& [name, part] : std::array<std::pair<const char*, TransformsPart>, 3>{
+           {{kTrainName, TransformsPart::kTrain}, {"transforms_val.json", TransformsPart::kVal}, {"transforms_test.json", TransformsPart::kTest}}}) {
+    if (fs::exists(folder / name)) files.push_back({folder / name, part});
   }
   return files;
 }
@@ -99,8 +108,20 @@ ModelFiles FindModel(const fs::path& path) {
   if (!fs::exists(path)) throw base::InputError(path, "no such folder or file", kFormats);
   if (!fs::is_directory(path)) return FindModelFile(path);
   if (IsColmapFolder(path)) return {ModelFormat::kColmap, path};
-  if (fs::exists(path / "transforms.json")) return {ModelFormat::kTransforms, path / "transforms.json"};
-  if (fs::exists(path / "transforms_train.json")) return {ModelFormat::kTransforms, path};
+  if (fs::exists(path / "transforms.json")) {
+    if (fs::exists(path / kTrainName)) {
+      throw base::InputError(path, std::string("has transforms.json and ") + kTrainName,
+                             std::string("Give one of the files instead of the folder; with ") + kTrainName + " its split is used");
+    }
+    return {ModelFormat::kTransforms, path / "transforms.json"};
+  }
+  if (fs::exists(path / kTrainName)) return {ModelFormat::kTransforms, path};
+  for (const char* name : {"transforms_val.json", "transforms_test.json"}) {
+    if (fs::exists(path / name))
+      throw base::InputError(path, std::string("has a ") + name + ", but no " + kTrainName, "Add it: it names the photos to train on");
+  }
+  if (IsColmapFolder(path / "sparse" / "0")) return {ModelFormat::kColmap, path / "sparse" / "0"};
+  if (fs::exists(path / "poses_bounds.npy")) return {ModelFormat::kPosesBounds, path / "poses_bounds.npy"};
   for (const fs::path& file : {path / "reconstruction.json", path / "opensfm" / "reconstruction.json"}) {
     if (fs::exists(file)) return {ModelFormat::kOpensfm, file};
   }
@@ -116,18 +137,21 @@ InputModel ReadModel(const fs::path& path, const ModelPhotos& photos) {
   base::LogInfo("the model is {}: {}", FormatName(files.format), files.path.string());
   switch (files.format) {
     case ModelFormat::kTransforms:
-      return ReadTransforms(fs::is_directory(files.path) ? SplitFiles(files.path) : std::vector<TransformsFile>{{files.path, false}}, photos);
+      return ReadTransforms(FilesOfTransforms(files.path), photos);
     case ModelFormat::kOpensfm:
       return ReadOpensfm(files.path, photos);
     case ModelFormat::kMetashape:
       return ReadMetashape(files.path, photos);
     case ModelFormat::kOpf:
       return ReadOpf(files.path, photos);
+    case ModelFormat::kPosesBounds:
+      return ReadPosesBounds(files.path, photos);
     case ModelFormat::kColmap:
       break;
   }
   InputModel model;
   model.sfm = survey::ReadColmapModel(files.path);
+  UseReducedPictures(files.path, photos, model);
   return model;
 }
 

@@ -1,11 +1,15 @@
 #include "prepare/models/transforms_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 
 #include "core/base/cancel.h"
 #include "core/base/json_document.h"
+#include "core/base/log.h"
+#include "core/base/pattern.h"
 #include "prepare/models/ply_points.h"
 
 namespace skyquilt::prepare::models {
@@ -75,8 +79,12 @@ camera::Camera LensOf(const JsonValue& frame, const JsonValue& root, const Eigen
   return PerspectiveCamera(size.x(), size.y(), focal, centre, k1, k2, k3, p1, p2);
 }
 
+// In place of transform_matrix, in MatrixCity's blocks.
+constexpr const char* kScaledMatrix = "rot_mat";
+
 geo::Rigid3d PoseOfFrame(const JsonValue& frame) {
-  const JsonValue matrix = frame.At("transform_matrix");
+  const std::optional<JsonValue> scaled = frame.Find(kScaledMatrix);
+  const JsonValue matrix = scaled ? *scaled : frame.At("transform_matrix");
   if (matrix.Size() != 3 && matrix.Size() != 4) matrix.Fail("must have 4 rows");
   Eigen::Matrix<double, 3, 4> world_from_cam;
   for (size_t row = 0; row < 3; ++row) {
@@ -90,6 +98,17 @@ geo::Rigid3d PoseOfFrame(const JsonValue& frame) {
   return PoseFromCentre(*rotation * Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal(), world_from_cam.col(3));
 }
 
+// The name of a frame's photo. In a data set, parts of which have pictures of the same names, only its own path is it.
+std::string NameOf(const JsonValue& frame, const ModelPhotos& photos, const std::filesystem::path& folder, bool in_set) {
+  if (frame.Find(kScaledMatrix)) {
+    const std::string file = fmt::format("{:04d}.png", frame.At("frame_index").Integer(0, 99'999'999));
+    const std::optional<std::string> beside = photos.FindPath(file, folder);
+    return beside ? *beside : photos.FindPath("rgb/" + file, folder).value_or(file);
+  }
+  const std::string path = frame.At("file_path").Text();
+  return in_set ? photos.FindPath(path, folder).value_or(PhotoNames::Cleaned(path)) : photos.Resolve(path, folder);
+}
+
 // Names in nerfstudio's lists of photos per split.
 void AddHeldOut(const JsonValue& root, const ModelPhotos& photos, const std::filesystem::path& folder, std::set<std::string>& test_photos) {
   for (const char* key : {"val_filenames", "test_filenames"}) {
@@ -99,31 +118,104 @@ void AddHeldOut(const JsonValue& root, const ModelPhotos& photos, const std::fil
   }
 }
 
+// A file that was read, with its part.
+struct ReadPart {
+  TransformsPart part = TransformsPart::kWhole;
+  JsonDocument document;
+};
+using ReadParts = std::vector<std::unique_ptr<ReadPart>>;
+
+bool Any(const ReadParts& parts, TransformsPart which) {
+  return std::any_of(parts.begin(), parts.end(),
+                     [which](const auto& one) { return one->part == which && one->document.Root().At("frames").Size() > 0; });
+}
+
+template <typename Condition>
+bool EveryFrame(const ReadParts& parts, const Condition& condition) {
+  size_t n = 0;
+  for (const auto& one : parts) {
+    const JsonValue frames = one->document.Root().At("frames");
+    for (size_t i = 0; i < frames.Size(); ++i, ++n) {
+      if (!condition(frames.At(i))) return false;
+    }
+  }
+  return n > 0;
+}
+
+// By the names of its pictures: "../../train/block_1/0012.png".
+bool IsMatrixCitySplit(const ReadParts& parts) {
+  return EveryFrame(parts, [](const JsonValue& frame) {
+    const std::optional<JsonValue> path = frame.Find("file_path");
+    if (!path || !path->json().is_string()) return false;
+    const std::string text = path->json().get<std::string>();
+    return text.size() < 256 && base::MatchWhole(text, "\\.\\./\\.\\./(train|train_dense|test)/[^/]+/[0-9]+\\.png").has_value();
+  });
+}
+
+// The set, its frame and which pictures are its own.
+void RecogniseSet(const ReadParts& parts, InputModel& model) {
+  const JsonValue root = parts.front()->document.Root();
+  const bool split = parts.front()->part != TransformsPart::kWhole;
+  if (EveryFrame(parts, [](const JsonValue& frame) { return frame.Find(kScaledMatrix).has_value(); })) {
+    model.set = "MatrixCity";
+    model.metres_per_unit = 1.0;
+  } else if (split && IsMatrixCitySplit(parts)) {
+    model.set = "MatrixCity";
+    model.metres_per_unit = 100.0;
+  } else if (split && root.Find("camera_angle_x") && !root.Find("fl_x")) {
+    model.set = "Blender";
+  }
+  model.names_all_photos = !model.set.empty();
+  if (!model.set.empty()) model.up = Eigen::Vector3d::UnitZ();
+  if (const std::optional<JsonValue> up = root.Find("up")) {
+    const std::vector<double> numbers = up->Numbers(3);
+    const Eigen::Vector3d direction(numbers[0], numbers[1], numbers[2]);
+    if (!(direction.norm() > 0.0)) up->Fail("must be a direction, not 0, 0, 0");
+    model.up = direction.normalized();
+  }
+  if (const std::optional<JsonValue> unit = root.Find("metres_per_unit")) model.metres_per_unit = unit->Positive();
+}
+
 }  // namespace
 
 InputModel ReadTransforms(const std::vector<TransformsFile>& files, const ModelPhotos& photos) {
   InputModel model;
   model.format = ModelFormat::kTransforms;
+  ReadParts parts;
+  for (const TransformsFile& one : files) {
+    base::ThrowIfCancelled();
+    parts.push_back(std::unique_ptr<ReadPart>(new ReadPart{one.part, JsonDocument(one.file, kFix)}));
+  }
+  RecogniseSet(parts, model);
+  const bool without_val = model.set == "Blender" && Any(parts, TransformsPart::kTest) && Any(parts, TransformsPart::kVal);
   SfmBuilder builder(model.sfm);
   std::map<std::string, bool> seen;
   std::optional<std::filesystem::path> ply;
-  for (const TransformsFile& part : files) {
+  for (const auto& one : parts) {
     base::ThrowIfCancelled();
-    const JsonDocument document(part.file, kFix);
-    const JsonValue root = document.Root();
-    const std::filesystem::path folder = part.file.parent_path();
+    const JsonValue root = one->document.Root();
+    const std::filesystem::path folder = one->document.file().parent_path();
     const JsonValue frames = root.At("frames");
     if (frames.Size() == 0 && files.size() == 1) frames.Fail("has no photos");
+    if (const std::optional<JsonValue> file = root.Find("ply_file_path"); file && !ply) ply = folder / file->Text();
+    if (one->part == TransformsPart::kVal && without_val) {
+      base::LogInfo("{} is not used: published results neither train on its {} photos nor score them", one->document.file().string(), frames.Size());
+      continue;
+    }
     for (size_t i = 0; i < frames.Size(); ++i) {
       const JsonValue frame = frames.At(i);
-      const std::string name = photos.Resolve(frame.At("file_path").Text(), folder);
+      const std::string name = NameOf(frame, photos, folder, model.names_all_photos);
+      if (model.names_all_photos && !photos.Has(name)) {
+        frame.Fail("is of the picture " + name + ", which is not among the photos in " + photos.root().string(),
+                   "Unpack all pictures of the data set where the file says, or remove the frame. survey/input.csv says which pictures were left out "
+                   "and why");
+      }
       if (!seen.emplace(name, true).second) frame.Fail("is the second one for the photo " + name, "Name every photo once");
       const uint32_t camera_id = builder.AddCamera(LensOf(frame, root, SizeOfFrame(frame, root, name, photos)));
       builder.AddImage(name, camera_id, PoseOfFrame(frame));
-      if (part.is_test) model.test_photos.insert(name);
+      if (one->part == TransformsPart::kVal || one->part == TransformsPart::kTest) model.test_photos.insert(name);
     }
     AddHeldOut(root, photos, folder, model.test_photos);
-    if (const std::optional<JsonValue> file = root.Find("ply_file_path"); file && !ply) ply = folder / file->Text();
   }
   if (ply) {
     for (const PlyPoint& point : ReadPlyPoints(*ply)) builder.AddPoint(point.x, point.rgb, {});

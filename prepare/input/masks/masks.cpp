@@ -233,7 +233,7 @@ PhotoMasks FindMasks(const fs::path& photo_root, const MaskPlaces& places, const
         job.file.clear();
       }
     }
-    job.alpha = job.file.empty() && MayHaveAlpha(photos[i].name) && ReadPictureHeader(photo_root / photos[i].name).has_alpha;
+    job.alpha = job.file.empty() && !photos[i].filled && MayHaveAlpha(photos[i].name) && ReadPictureHeader(photo_root / photos[i].name).has_alpha;
     jobs.push_back(std::move(job));
   }
   if (n_misfit > 0) base::LogWarning("{} has another shape than {} photos, where it is not used", misfit, n_misfit);

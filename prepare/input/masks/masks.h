@@ -35,7 +35,7 @@ struct PhotoMasks {
 //     Metashape) or .jpg, .tif; sub/x.png or any picture of its name (not beside the photo, except in black and white); then the same without sub/
 //     where that is unique
 //   one for all photos of a folder: sub/mask.png or camera_mask.png, those of the folders above, masks/sub.png; the only file of the folder of masks
-//   its own alpha (PNG, TIFF)
+//   its own alpha (PNG, TIFF), unless that was filled (PhotoFile::filled)
 // Masks of another size with the same shape are scaled (nearest pixel). `files`: the list (list_files.h), whose kMask are masks in the photo folder;
 // `mask` of photos and files is filled. Unless all masks already are PNGs of the photos' sizes with COLMAP's names in one folder, they are written to
 // `own_folder`, where files of earlier calls that are equal stay untouched. Logs what was found, and warns of masks that fit no photo. Throws

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "core/base/random.h"
@@ -102,6 +103,26 @@ TEST(Ssim, AgreesWithTheDefinitionUnderAMask) {
     }
   }
   EXPECT_EQ(Ssim(a, b, &mask), before);
+}
+
+// Golden figure: structural_similarity of scikit-image 0.19.3 with gaussian_weights, sigma 1.5 and use_sample_covariance=False on the same pictures,
+// by scripts/compare_ssim.py, which has the figures of other variants, too. Ours are floats of 24 bits, its are doubles.
+TEST(Ssim, IsThatOfScikitImageWithWangsSettings) {
+  constexpr int kWidth = 64, kHeight = 48;
+  const auto picture = [](uint32_t state, bool blurred) {
+    Image8 pixels(kWidth, kHeight, 3);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        for (int c = 0; c < 3; ++c) {
+          state = state * 1664525U + 1013904223U;
+          const int wave = std::abs((x + 2 * y + 5 * c) % 32 - 16) + (blurred ? 0 : (x * y + 3 * c) % 7);
+          pixels.At(x, y)[c] = static_cast<uint8_t>(40 + 9 * wave + static_cast<int>(state >> 28U));
+        }
+      }
+    }
+    return image::ToImageF(pixels);
+  };
+  EXPECT_NEAR(Ssim(picture(1, false), picture(2, true), nullptr), 0.7490439948, 1e-7);
 }
 
 // For flat images the closed form is the luminance term alone: (2ab + C1) / (a^2 + b^2 + C1).

@@ -45,6 +45,33 @@ TEST_F(MetricsJsonTest, HasEveryPromisedKeyEvenWhenNothingWasMeasured) {
   EXPECT_FALSE(json.contains("classes"));
 }
 
+// Whole frames, each with its variant, so that they can be set beside published figures.
+TEST_F(MetricsJsonTest, NamesTheVariantsOfWhatIsCompared) {
+  Metrics metrics;
+  metrics.psnr = 20.0;
+  metrics.psnr_full_frame = 25.0;
+  metrics.ssim = 0.5;
+  metrics.ssim_full_frame = 0.75;
+  metrics.lpips_note = "not measured";
+  photos::PhotoScore photo;
+  photo.width = 20;
+  photo.height = 10;
+  photo.used_pixels = 150;
+  metrics.photos = {photo};
+  const auto json = base::ParseJson(MetricsJson(metrics))["as_published"];
+  EXPECT_EQ(json["psnr"], 25.0);
+  EXPECT_EQ(json["ssim"], 0.75);
+  EXPECT_TRUE(json["lpips"].is_null());
+  EXPECT_EQ(json["lpips_variant"], "not measured");
+  EXPECT_NE(json["ssim_variant"].get<std::string>().find("window 11 x 11, sigma 1.5"), std::string::npos);
+  EXPECT_NE(json["psnr_variant"].get<std::string>().find("mean over the photos"), std::string::npos);
+  EXPECT_EQ(json["photos"], 1);
+  EXPECT_EQ(json["width"], 20);
+  EXPECT_EQ(json["height"], 10);
+  EXPECT_EQ(json["unmasked_share"], 0.75);
+  EXPECT_TRUE(base::ParseJson(MetricsJson(Metrics{}))["as_published"]["unmasked_share"].is_null());
+}
+
 TEST_F(MetricsJsonTest, WritesValuesAndTurnsNanAndInfinityIntoNull) {
   Metrics metrics;
   metrics.psnr = 27.5;

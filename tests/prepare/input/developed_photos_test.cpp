@@ -45,7 +45,7 @@ TEST_F(DevelopedPhotos, AreReadWithTheirTagsAndWrittenAsPictures) {
     EXPECT_EQ(set.usable[3].tags.model, "Made") << "EXIF in HEIC";
     EXPECT_EQ(set.usable[3].tags.orientation, 8);
   }
-  const fs::path pictures = MakePlainPhotos(photos, "", made, set, threads);
+  const fs::path pictures = MakePlainPhotos(photos, "", "mask", made, set, threads);
   EXPECT_EQ(pictures, made);
   for (size_t i = 0; i < set.usable.size(); ++i) {
     EXPECT_EQ(set.usable[i].converted, set.usable[i].name != "c.jpg");
@@ -56,7 +56,7 @@ TEST_F(DevelopedPhotos, AreReadWithTheirTagsAndWrittenAsPictures) {
   // A second call finds them.
   const auto time = fs::last_write_time(made / "a.dng");
   PhotoSet again = ReadPhotos(photos, names, threads);
-  MakePlainPhotos(photos, "", made, again, threads);
+  MakePlainPhotos(photos, "", "mask", made, again, threads);
   EXPECT_EQ(fs::last_write_time(made / "a.dng"), time);
 }
 
@@ -68,7 +68,7 @@ TEST_F(DevelopedPhotos, ThoseThatCannotBeDevelopedAreLeftOut) {
   base::WriteFileAtomically(photos / "e.heic", "no picture");
   base::ThreadPool threads(2);
   PhotoSet set = ReadPhotos(photos, {"a.dng", "b.dng", "c.dng", "d.dng", "e.heic"}, threads);
-  MakePlainPhotos(photos, "", folder_ / "made", set, threads);
+  MakePlainPhotos(photos, "", "mask", folder_ / "made", set, threads);
   EXPECT_EQ(set.usable.size(), 3U);
   EXPECT_EQ(set.unreadable.size(), 2U);
 }

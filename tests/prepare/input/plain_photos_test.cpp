@@ -55,7 +55,9 @@ class PlainPhotosTest : public ::testing::Test {
     image::SaveJpeg(image::Image8(6, 4, 3, 90), folder_ / ("photos/" + name), 90);
     AddPhoto(name);
   }
-  fs::path Make(const std::string& bands = "") { return MakePlainPhotos(folder_ / "photos", bands, folder_ / "made", photos_, threads_); }
+  fs::path Make(const std::string& bands = "", const std::string& alpha = "mask") {
+    return MakePlainPhotos(folder_ / "photos", bands, alpha, folder_ / "made", photos_, threads_);
+  }
   // The first pixel of what all others read.
   std::vector<uint8_t> Pixel(const fs::path& root, const std::string& name) {
     const image::Image8 image = image::LoadRgb8(root / name);
@@ -76,6 +78,32 @@ TEST_F(PlainPhotosTest, PlainPhotosStayWhereTheyAre) {
   EXPECT_EQ(Make(), folder_ / "photos");
   EXPECT_FALSE(fs::exists(folder_ / "made"));
   EXPECT_FALSE(photos_.usable[0].converted);
+}
+
+// NeRF's readers: rgb * alpha + background * (1 - alpha) of the stored values.
+TEST_F(PlainPhotosTest, TransparencyIsFilledAsAskedFor) {
+  fs::create_directories(folder_ / "photos");
+  image::Image8 rgba(6, 4, 4, 255);
+  const std::vector<uint8_t> first = {200, 100, 0, 51};  // a fifth
+  std::copy(first.begin(), first.end(), rgba.data.begin());
+  base::WriteFileAtomically(folder_ / "photos/a.png", image::EncodePng(rgba, 1));
+  AddPhoto("a.png");
+  for (const char* name : {"b.jpg", "c.jpg"}) WriteJpegPhoto(name);
+  const PhotoSet given = photos_;
+  EXPECT_EQ(Make(), folder_ / "photos");
+  EXPECT_FALSE(photos_.usable[0].filled);
+  const fs::path white = Make("", "white");
+  EXPECT_EQ(white, folder_ / "made");
+  EXPECT_EQ(Pixel(white, "a.png"), (Rgb{244, 224, 204}));
+  EXPECT_EQ(image::LoadRgb8(white / "a.png").data[3], 255);
+  EXPECT_TRUE(photos_.usable[0].filled && photos_.usable[0].converted);
+  EXPECT_FALSE(photos_.usable[1].filled || photos_.usable[1].converted);
+  photos_ = given;
+  EXPECT_EQ(Pixel(Make("", "black"), "a.png"), (Rgb{40, 20, 0}));
+  // And found finished.
+  photos_ = given;
+  Make("", "black");
+  EXPECT_TRUE(photos_.usable[0].filled);
 }
 
 // One photo that uses the whole range makes 16 bits of all.

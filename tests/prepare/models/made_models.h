@@ -38,11 +38,12 @@ inline constexpr geo::Geodetic kModelOrigin{47.1, 8.4, 420.0};
 // By file name.
 using Files = std::map<std::string, std::string>;
 
-Files TransformsFiles(const MadeModel& survey);  // transforms.json, points.ply
-Files BlenderFiles(const MadeModel& survey);     // transforms_train.json with all photos but the last, transforms_test.json; no lens errors
-Files OpensfmFiles(const MadeModel& survey);     // reconstruction.json, reference_lla.json, tracks.csv
-Files MetashapeFiles(const MadeModel& survey);   // cameras.xml: the chunk is turned and 10 times smaller
-Files OpfFiles(const MadeModel& survey);         // project.opf and the files it names: the frame is UTM 32N less kOpfShift; fx is left out
+Files TransformsFiles(const MadeModel& survey);   // transforms.json, points.ply
+Files BlenderFiles(const MadeModel& survey);      // transforms_train.json with all photos but the last, transforms_test.json; no lens errors
+Files OpensfmFiles(const MadeModel& survey);      // reconstruction.json, reference_lla.json, tracks.csv
+Files MetashapeFiles(const MadeModel& survey);    // cameras.xml: the chunk is turned and 10 times smaller
+Files OpfFiles(const MadeModel& survey);          // project.opf and the files it names: the frame is UTM 32N less kOpfShift; fx is left out
+Files PosesBoundsFiles(const MadeModel& survey);  // poses_bounds.npy; no lens errors, fx counts for both axes (made_sets.cpp)
 inline const Eigen::Vector3d kOpfShift(-450000.0, -5216000.0, -400.0);
 
 void WriteFiles(const Files& files, const std::filesystem::path& folder);

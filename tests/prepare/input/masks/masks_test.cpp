@@ -269,7 +269,7 @@ TEST(ModelsIn, AreFoundByTheirNames) {
   folder.AddAll({"sparse/0/cameras.txt", "transforms.json", "transforms_train.json", "opensfm/reconstruction.json", "project.OPF", "notes.xml"});
   std::set<std::string> names;
   for (const fs::path& model : ModelsIn(folder.path())) names.insert(fs::relative(model, folder.path()).generic_string());
-  EXPECT_EQ(names, (std::set<std::string>{"sparse/0", "transforms.json", "opensfm/reconstruction.json", "project.OPF"}));
+  EXPECT_EQ(names, (std::set<std::string>{"sparse/0", "transforms.json", "transforms_train.json", "opensfm/reconstruction.json", "project.OPF"}));
 }
 
 }  // namespace

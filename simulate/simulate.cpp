@@ -116,13 +116,6 @@ void CheckVideo(const SimulateOptions& options, const PlaceSpec& place) {
   }
 }
 
-// Likewise.
-void CheckPanoramas(const SimulateOptions& options) {
-  if (options.panoramas > 0 && options.panorama_width % 2 != 0) {
-    throw base::UsageError("simulate.panorama_width = " + std::to_string(options.panorama_width) + " must be even, as the height is half of it");
-  }
-}
-
 // Films the flight of the photos.
 void FilmFlight(const SimulateOptions& options, const PlaceSpec& place, const std::vector<PhotoPlan>& photos, const World& world,
                 const PhotoRenderer& renderer, const geo::EnuFrame& frame, const fs::path& folder, base::ThreadPool& threads) {
@@ -180,7 +173,6 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   const auto begin = std::chrono::steady_clock::now();
   const PlaceSpec place = ResolvePlace(options);
   CheckVideo(options, place);
-  CheckPanoramas(options);
   PrepareFolder(folder);
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
   base::LogInfo("simulate: building place {}", place.name);

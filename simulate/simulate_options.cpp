@@ -88,7 +88,7 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
        "also film the flight of a survey, with so many frames per second, and write subtitles with place and heights as drones do; 0: no video"},
       {"panoramas", &O::panoramas, Range{0, 10000},
        "also write so many panoramas, level, from places evenly chosen along the flight, with the tags of 360-degree cameras; 0: none"},
-      {"panorama_width", &O::panorama_width, Range{64, 16384}, "width of the panoramas in pixels, even; their height is half of it"},
+      {"panorama_width", &O::panorama_width, Range{64, 16384}.MultipleOf(2), "width of the panoramas in pixels; their height is half of it"},
       {"edge_targets", &O::edge_targets, Range{0, 100},
        "number of slanted-edge targets on open ground, half black and half white, to measure the sharpness of maps and photos"},
       {"exact_frame", &O::exact_frame, Range(),

@@ -63,13 +63,13 @@ class Sampler {
 
  private:
   const uint8_t* PixelAt(int x, int y) const {
-    if (!area_.IsWhole()) return picture_.At(std::clamp(x, 0, area_.width - 1), std::clamp(y, 0, area_.height - 1));
     // Beyond a pole is the other side of the sphere.
-    if (y < 0 || y >= area_.height) {
+    if (area_.IsWhole() && (y < 0 || y >= area_.height)) {
       y = y < 0 ? -1 - y : 2 * area_.height - 1 - y;
       x += area_.width / 2;
     }
-    return picture_.At(((x % area_.width) + area_.width) % area_.width, std::clamp(y, 0, area_.height - 1));
+    x = area_.GoesAround() ? ((x % area_.width) + area_.width) % area_.width : std::clamp(x, 0, area_.width - 1);
+    return picture_.At(x, std::clamp(y, 0, area_.height - 1));
   }
 
   const image::Image8& picture_;

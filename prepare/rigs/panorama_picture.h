@@ -18,7 +18,8 @@ struct SphereArea {
   int left = 0, top = 0;           // of the picture in it
   int width = 0, height = 0;       // of the picture
 
-  bool IsWhole() const { return left == 0 && top == 0 && width == sphere.width && height == sphere.height; }
+  bool GoesAround() const { return left == 0 && width == sphere.width; }
+  bool IsWhole() const { return GoesAround() && top == 0 && height == sphere.height; }
 };
 
 // By its tags; without, the whole of 360 degrees, and of the height what it shows around the horizon. The file is a panorama.

@@ -44,10 +44,12 @@ struct StepHashes {
 std::string PairInputs(const std::vector<input::PhotoFile>& photos, const PairRules& rules) {
   std::string text = fmt::format("pairs {} {} {} {} {} {} {} {}\n", rules.all_below, rules.neighbors, rules.sectors, rules.sector_reach,
                                  rules.position_neighbors, rules.similar, rules.name_neighbors, rules.links);
+  if (AnyRig(photos)) text += fmt::format("{} shots\n", rules.shot_neighbors);
   for (const input::PhotoFile& photo : photos) {
     const survey::PhotoTags& tags = photo.tags;
     text += tags.gps ? fmt::format("{:.9f} {:.9f}", tags.gps->latitude_deg, tags.gps->longitude_deg) : "-";
-    text += " " + TagText(tags.gimbal_pitch_deg) + " " + TagText(tags.gimbal_yaw_deg) + " " + TagText(tags.relative_altitude_m) + "\n";
+    text +=
+        " " + TagText(tags.gimbal_pitch_deg) + " " + TagText(tags.gimbal_yaw_deg) + " " + TagText(tags.relative_altitude_m) + "\n" + RigInputs(photo);
   }
   return text;
 }

@@ -112,7 +112,8 @@ void WritePlan(const Plan& plan, const fs::path& file) {
 bool WasMadeFrom(const fs::path& file, const std::string& identity) {
   if (!fs::exists(file)) return false;
   const nlohmann::json json = base::TryParseJson(base::ReadFile(file));
-  return json.is_object() && json.value("made_from", "") == identity;
+  const auto made_from = json.is_object() ? json.find("made_from") : json.end();
+  return made_from != json.end() && made_from->is_string() && made_from->get<std::string>() == identity;
 }
 
 bool IsTaken(const Plan& plan, const PanoramaJob& job, size_t view) {

@@ -38,13 +38,16 @@ RigScene MakeRigScene(double arm_m, double pixel_sigma, double pose_sigma_deg) {
   lens.exact = true;
   truth.lenses = {lens};
   for (int shot = 0; shot < 6; ++shot) {
-    const RigPose pose{prepare::poses::RotationFromAngles(60.0 * shot, 3.0, -2.0), {4.0 * shot, std::sin(shot), 2.0 + 0.3 * shot}};
+    const RigPose pose{prepare::poses::RotationFromAngles(60.0 * shot, 3.0, -2.0),
+                       {10.0 + 8.0 * std::cos(shot), 8.0 * std::sin(shot), 2.0 + 0.3 * shot}};
     for (int view = 0; view < 4; ++view) {
       BundlePhoto photo;
       photo.shot = shot;
       photo.cam_from_rig.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(90.0 * kDegree * view, Eigen::Vector3d::UnitY()));
       photo.cam_from_rig.translation = {0.0, 0.0, -arm_m};
       PlaceByRig(pose, photo);
+      photo.gps = pose.centre;
+      photo.gps_sigma = Eigen::Vector3d::Constant(0.05);
       truth.photos.push_back(photo);
     }
   }
@@ -66,8 +69,6 @@ RigScene MakeRigScene(double arm_m, double pixel_sigma, double pose_sigma_deg) {
   truth.agrees.assign(truth.pixel.size(), 1);
   scene.noisy = truth;
   for (BundlePhoto& photo : scene.noisy.photos) {
-    photo.gps = photo.centre;
-    photo.gps_sigma = Eigen::Vector3d::Constant(0.05);
     photo.cam_from_enu = (SmallTurn(random, pose_sigma_deg * kDegree) * photo.cam_from_enu).normalized();
     const double x = random.Normal(), y = random.Normal(), z = random.Normal();
     photo.centre += 0.05 * Eigen::Vector3d(x, y, z);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "core/base/errors.h"
@@ -79,6 +80,31 @@ void MarkHoldout(const Holdout& holdout, survey::Survey& survey) {
   const bool any_train = std::any_of(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return !photo.is_test; });
   if (!survey.photos.empty() && !any_train)
     throw base::UsageError("prepare.holdout keeps every photo for testing, so none is left to train on: hold out fewer");
+}
+
+void MarkHoldout(const Holdout& holdout, const std::map<std::string, std::string>& shot_of_photo, survey::Survey& survey) {
+  const auto shot_of = [&](const std::string& photo) {
+    const auto shot = shot_of_photo.find(photo);
+    return shot == shot_of_photo.end() ? photo : shot->second;
+  };
+  std::set<std::string> names;
+  for (const survey::Photo& photo : survey.photos) {
+    names.insert(shot_of(photo.name));
+    if (!holdout.list.empty()) names.insert(photo.name);
+  }
+  survey::Survey counted;
+  for (const std::string& name : names) counted.photos.emplace_back().name = name;
+  counted.unregistered = survey.unregistered;
+  MarkHoldout(holdout, counted);
+  std::set<std::string> held_out;
+  for (const survey::Photo& photo : counted.photos) {
+    if (photo.is_test) held_out.insert(shot_of(photo.name));
+  }
+  for (survey::Photo& photo : survey.photos) photo.is_test = held_out.contains(shot_of(photo.name));
+  const bool any_train = std::any_of(survey.photos.begin(), survey.photos.end(), [](const survey::Photo& photo) { return !photo.is_test; });
+  if (!survey.photos.empty() && !any_train) {
+    throw base::UsageError("prepare.holdout keeps photos of every shot for testing, so none is left to train on: hold out fewer shots");
+  }
 }
 
 }  // namespace skyquilt::prepare

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "core/survey/survey.h"
@@ -19,5 +20,10 @@ Holdout ParseHoldout(const std::string& text);
 // Sets is_test of every photo. The index counts the photos with a pose in name order: index % every == offset is held out, as usual in NeRF
 // benchmarks. Throws base::InputError for a list that cannot be read or names an unknown photo, base::UsageError if no photo remains to train on.
 void MarkHoldout(const Holdout& holdout, survey::Survey& survey);
+
+// The same with photos of one shot (the cameras of a rig, the views of a panorama) held out together, or none of them: neighbours show nearly the
+// same. Each shot counts as one photo with its name. A list may name shots, or any of their photos. `shot_of_photo`: by names of photos; those that
+// are not in it stand alone.
+void MarkHoldout(const Holdout& holdout, const std::map<std::string, std::string>& shot_of_photo, survey::Survey& survey);
 
 }  // namespace skyquilt::prepare

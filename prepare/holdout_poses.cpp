@@ -11,6 +11,7 @@
 #include "core/base/progress.h"
 #include "core/geo/enu_frame.h"
 #include "prepare/bundle/resect.h"
+#include "prepare/bundle/shots.h"
 #include "prepare/control/fit/control_adjustment.h"
 #include "prepare/control/fit/control_bundle.h"
 #include "prepare/control/fit/fit_control.h"
@@ -139,12 +140,18 @@ std::vector<std::string> ResectWithheld(const WithheldPhotos& photos, survey::Co
 
   const std::vector<std::vector<uint32_t>> entries = bundle::EntriesOfPhotos(bundle);
   const std::vector<uint32_t> track_of = bundle::TrackOfEntries(bundle.tracks);
+  for (size_t i = first; i < bundle.photos.size(); ++i) {
+    bundle::BundlePhoto& photo = bundle.photos[i];
+    photo.placed =
+        photo.placed && bundle::RefineByPoints(bundle, static_cast<uint32_t>(i), entries[i], track_of, threshold) >= bundle::kLeastObservations;
+  }
+  bundle::PlaceShots(bundle);
   std::vector<survey::ColmapImage> resected;
   std::vector<std::string> lost;
   for (size_t i = first; i < bundle.photos.size(); ++i) {
     survey::ColmapImage& image = model.images[i];
     const bundle::BundlePhoto& photo = bundle.photos[i];
-    if (!photo.placed || bundle::RefineByPoints(bundle, static_cast<uint32_t>(i), entries[i], track_of, threshold) < bundle::kLeastObservations) {
+    if (!photo.placed) {
       lost.push_back(image.name);
       continue;
     }

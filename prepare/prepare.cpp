@@ -47,8 +47,11 @@
 #include "prepare/models/read_model.h"
 #include "prepare/poses/colmap_run.h"
 #include "prepare/poses/focal_check.h"
+#include "prepare/poses/shot_poses.h"
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
+#include "prepare/rigs/cut_panoramas.h"
+#include "prepare/rigs/rig_config.h"
 #include "prepare/survey_points.h"
 #include "prepare/video/video_frames.h"
 
@@ -93,6 +96,24 @@ void NoteReadPhotos(const input::PhotoSet& photos, std::vector<input::InputFile>
     by_name.at(name)->reason = "cannot be used: the log says why";
   }
   for (size_t i = 0; i < shots.size(); ++i) by_name.at(photos.usable[i].name)->shot = by_name.at(photos.usable[shots[i]].name)->shot;
+}
+
+void NotePanoramas(const std::vector<size_t>& panoramas, const input::PhotoSet& photos, std::vector<input::InputFile>& files) {
+  std::set<std::string> names;
+  for (const size_t i : panoramas) names.insert(photos.usable[i].name);
+  for (input::InputFile& file : files) {
+    if (names.contains(file.name)) file.reason = "panorama: views.csv lists what it is cut into";
+  }
+}
+
+// Of the photos as all later stages know them: views in place of panoramas.
+std::vector<std::string> NamesAfterCut(std::vector<std::string> names, const std::vector<std::string>& cut, const input::PhotoSet& photos) {
+  if (cut.empty()) return names;
+  std::set<std::string> all(names.begin(), names.end());
+  for (const std::string& name : cut) all.erase(name);
+  for (const input::PhotoFile& photo : photos.usable) all.insert(photo.name);
+  all.insert(photos.unreadable.begin(), photos.unreadable.end());
+  return {all.begin(), all.end()};
 }
 
 // A model may have been made of pictures that are no photos here.
@@ -261,7 +282,11 @@ std::set<std::string> ChooseHeldOut(const PrepareOptions& options, const models:
     with_pose.insert(photo.file.name);
   }
   std::set_difference(names.begin(), names.end(), with_pose.begin(), with_pose.end(), std::back_inserter(survey.unregistered));
-  MarkHoldout(ParseHoldout(options.holdout), survey);
+  std::map<std::string, std::string> shot_of_photo;
+  for (const input::PreparedPhoto& photo : photos) {
+    if (photo.file.rig) shot_of_photo.emplace(photo.file.name, photo.file.rig->shot);
+  }
+  MarkHoldout(ParseHoldout(options.holdout), shot_of_photo, survey);
   if (options.holdout == PrepareOptions().holdout) HoldOutByModel(model, model_path, survey);
   std::set<std::string> held_out;
   for (const survey::Photo& photo : survey.photos) {
@@ -327,18 +352,31 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
     input_model = models::ReadModel(folders.model, models::ModelPhotos(folders.photo_root, input::TakenNames(files)));
     LeaveOutUnnamed(input_model, files);
   }
-  const std::vector<std::string> names = input::TakenNames(files);
+  std::vector<std::string> names = input::TakenNames(files);
+  const fs::path rig_file = rigs::FindRigConfig(folders.photo_root, options.rig);
+  const std::vector<rigs::Rig> rigs_of_user = rig_file.empty() ? std::vector<rigs::Rig>() : rigs::ReadRigConfig(rig_file);
   input::PhotoSet photos = input::ReadPhotos(folders.photo_root, names, threads);
   // The pictures that all others read, under the same names.
-  const fs::path picture_root =
-      input::MakePlainPhotos(folders.photo_root, options.bands, options.alpha, input.out_folder / "photos_8bit", photos, threads);
+  fs::path picture_root = input::MakePlainPhotos(folders.photo_root, options.bands, options.alpha, input.out_folder / "photos_8bit", photos, threads);
   georeference::UsePositionFiles(folders.photo_root, options.geo_file, photos.usable);
   georeference::LogUnfilledTags(options.flight_gap_s, photos.usable);
   georeference::TurnPitchesThatLookUp(photos.usable);
-  const input::PhotoMasks masks =
+  input::PhotoMasks masks =
       input::FindMasks(folders.photo_root, folders.masks, fs::absolute(input.out_folder) / "masks", photos.usable, files, threads);
   NoteReadPhotos(photos, files);
+  const std::vector<size_t> panoramas = rigs::FindPanoramas(photos.usable, options.panoramas);
+  NotePanoramas(panoramas, photos, files);
   input::WriteInputTable(files, input.out_folder / kInputTable);
+  if (!rig_file.empty()) rigs::UseRigs(rigs_of_user, rig_file, photos.usable);
+  std::vector<std::string> cut;
+  for (const size_t i : panoramas) cut.push_back(photos.usable[i].name);
+  rigs::CutPhotos now{picture_root, masks.folder};
+  rigs::CutPanoramas(panoramas, PanoramaOptionsOf(options), input.out_folder, now, photos, threads);
+  picture_root = now.picture_root;
+  masks.folder = now.masks;
+  names = NamesAfterCut(std::move(names), cut, photos);
+  // A model of panoramas is one of their views.
+  if (!own_poses && !cut.empty()) input_model = models::ReadModel(folders.model, models::ModelPhotos(folders.photo_root, names));
   // Faults of these files are told before the long search for poses.
   const control::ControlPoints control_points = georeference::ReadControlPoints(ControlFilesOf(options), photos.usable);
   const std::vector<georeference::ScaleBar> bars =
@@ -350,6 +388,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
     const poses::ColmapJob job{picture_root, masks.folder, fs::absolute(input.out_folder) / "colmap"};
     folders.model = poses::RunColmap(job, photos.usable, PoseOptionsOf(options), threads, ranks);
     input_model.sfm = survey::ReadColmapModel(folders.model);
+    poses::MarkShots(photos.usable, input_model.sfm);
   } else {
     WarnOfPosesLeftOut(input_model.sfm, files);
   }

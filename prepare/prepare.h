@@ -10,6 +10,7 @@
 //   photos_8bit/                pictures that all later stages read instead of the photos, when some have more than 8 bits or several bands
 //                               (input/plain_photos.h)
 //   frames/, frames.csv         photos that are frames of videos, and why each was chosen (video/video_frames.h)
+//   views/, views.csv           views of panoramas, and what became of each (rigs/cut_panoramas.h); view_masks/ their masks
 //   scaled_model/               a COLMAP model that was made from photos of another size, scaled (input/match_sizes.h)
 //   colmap/                     database, models and log, when COLMAP was run, also for points of a model without; a second call resumes where the
 //                               first stopped

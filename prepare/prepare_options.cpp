@@ -46,6 +46,21 @@ std::vector<config::Field<PrepareOptions>> PrepareOptions::Fields() {
       {"video_size", &O::video_size, Range{100, 65535}.Or(0), "longer side in pixels of frames of larger videos; 0: that of the video"},
       {"video_clock_offset_s", &O::video_clock_offset_s, Range{-1e6, 1e6},
        "seconds that the clock of the videos is behind that of GPX and CSV files beside them"},
+      {"panoramas", &O::panoramas, Range::OneOf({"auto", "all", "none"}),
+       "which photos are panoramas of all directions (equirectangular), cut into views; auto: those whose GPano tags say so; all: and those twice as "
+       "wide as high; none"},
+      {"panorama_views", &O::panorama_views, Range{1, 36}, "views of a panorama around, in each ring"},
+      {"panorama_pitches", &O::panorama_pitches, Range{-90, 90},
+       "pitches of the rings in degrees, up from the horizon; -90 and 90 are one view each. 4 views with -90, 0 and 90 are the faces of a cube"},
+      {"panorama_fov_deg", &O::panorama_fov_deg, Range{20, 140}, "angle of view of these square views in degrees"},
+      {"panorama_width", &O::panorama_width, Range{64, 16384}.Or(0), "their width in pixels; 0: as sharp as the panorama"},
+      {"nadir_mask_deg", &O::nadir_mask_deg, Range{0, 90},
+       "half the angle in degrees of the cone straight down that is masked in panoramas, as it shows the tripod, the drone or who holds the camera; "
+       "0: "
+       "none"},
+      {"rig", &O::rig, Range(),
+       "COLMAP's rig_config.json of several cameras that take photos at once; empty: the one in or beside the photo folder, if there is one; none: "
+       "every photo by itself"},
       {"masks", &O::masks, Range(),
        "folder of masks named PHOTO.jpg.png, or one mask for all photos; 0 = ignore; empty: those in and beside the photo folder by their names, and "
        "the photos' alpha; none: no masks"},
@@ -93,6 +108,7 @@ void PrepareOptions::Check() const {
   input::CheckBandsOption(bands);
   georeference::CheckUpOption(up);
   georeference::ParseScaleBars(scale_bars);
+  if (panorama_pitches.empty()) throw base::UsageError("prepare.panorama_pitches is empty: give one or more pitches, for instance 0,-35,35");
   if (colmap.empty()) throw base::UsageError("prepare.colmap is empty: set it to the name or path of the COLMAP program, for instance colmap");
 }
 
@@ -126,6 +142,15 @@ georeference::PlaceOptions PlaceOptionsOf(const PrepareOptions& options) {
 
 video::VideoOptions VideoOptionsOf(const PrepareOptions& options) {
   return {.overlap = options.video_overlap, .limit = options.video_limit, .size = options.video_size, .clock_offset_s = options.video_clock_offset_s};
+}
+
+rigs::PanoramaOptions PanoramaOptionsOf(const PrepareOptions& options) {
+  return {.which = options.panoramas,
+          .per_ring = options.panorama_views,
+          .pitches_deg = options.panorama_pitches,
+          .fov_deg = options.panorama_fov_deg,
+          .width = options.panorama_width,
+          .nadir_mask_deg = options.nadir_mask_deg};
 }
 
 }  // namespace skyquilt::prepare

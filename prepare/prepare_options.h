@@ -8,6 +8,7 @@
 #include "prepare/control/reading/read_control.h"
 #include "prepare/georeference/place_options.h"
 #include "prepare/poses/pose_options.h"
+#include "prepare/rigs/cut_panoramas.h"
 #include "prepare/video/video_frames.h"
 
 namespace skyquilt::prepare {
@@ -28,6 +29,13 @@ struct PrepareOptions {
   int video_limit = 500;
   int video_size = 0;
   double video_clock_offset_s = 0.0;
+  std::string panoramas = "auto";
+  int panorama_views = 4;
+  std::vector<double> panorama_pitches = {0.0, -35.0, 35.0};
+  double panorama_fov_deg = 90.0;
+  int panorama_width = 0;
+  double nadir_mask_deg = 0.0;
+  std::string rig;
   std::string bands;
   std::string masks;
   std::string alpha = "mask";
@@ -52,10 +60,11 @@ struct PrepareOptions {
   void Check() const;
 };
 
-// The parts that the search for poses, the reading of control points, the geo-reference and the choice of frames need.
+// The parts that the search for poses, the reading of control points, the geo-reference, the choice of frames and the cutting of panoramas need.
 poses::PoseOptions PoseOptionsOf(const PrepareOptions& options);
 control::ControlFiles ControlFilesOf(const PrepareOptions& options);
 georeference::PlaceOptions PlaceOptionsOf(const PrepareOptions& options);
 video::VideoOptions VideoOptionsOf(const PrepareOptions& options);
+rigs::PanoramaOptions PanoramaOptionsOf(const PrepareOptions& options);
 
 }  // namespace skyquilt::prepare

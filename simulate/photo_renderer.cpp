@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/base/errors.h"
 #include "core/survey/surface_class.h"
@@ -20,19 +22,34 @@ struct PhotoRenderer::Frame {
   Eigen::Matrix3f enu_from_cam;
 };
 
-PhotoRenderer::PhotoRenderer(const World& world, const camera::Camera& camera, int samples_per_pixel, bool soft_shadows)
-    : world_(world), camera_(camera), shader_(world, soft_shadows), grid_(SamplesPerSide(samples_per_pixel)) {
-  const int width = camera.width * grid_;
-  const int height = camera.height * grid_;
-  sample_direction_.reserve(static_cast<size_t>(width) * static_cast<size_t>(height));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) sample_direction_.push_back(camera.RayFromImg({(x + 0.5) / grid_, (y + 0.5) / grid_}).cast<float>());
+PhotoRenderer::PhotoRenderer(const World& world, int width, int height, double pixel_angle, RayFromImg ray_from_img, int samples_per_pixel,
+                             bool soft_shadows)
+    : world_(world),
+      width_(width),
+      height_(height),
+      pixel_angle_(pixel_angle),
+      ray_from_img_(std::move(ray_from_img)),
+      shader_(world, soft_shadows),
+      grid_(SamplesPerSide(samples_per_pixel)) {
+  sample_direction_.reserve(static_cast<size_t>(width * grid_) * static_cast<size_t>(height * grid_));
+  for (int y = 0; y < height * grid_; ++y) {
+    for (int x = 0; x < width * grid_; ++x) sample_direction_.push_back(ray_from_img_({(x + 0.5) / grid_, (y + 0.5) / grid_}).cast<float>());
   }
 }
 
+PhotoRenderer::PhotoRenderer(const World& world, const camera::Camera& camera, int samples_per_pixel, bool soft_shadows)
+    : PhotoRenderer(
+          world, camera.width, camera.height, 1.0 / camera.FocalX(), [camera](const Eigen::Vector2d& pixel) { return camera.RayFromImg(pixel); },
+          samples_per_pixel, soft_shadows) {}
+
+PhotoRenderer::PhotoRenderer(const World& world, const camera::Equirectangular& panorama, int samples_per_pixel, bool soft_shadows)
+    : PhotoRenderer(
+          world, panorama.width, panorama.height, 2.0 * std::numbers::pi / panorama.width,
+          [panorama](const Eigen::Vector2d& pixel) { return panorama.RayFromImg(pixel); }, samples_per_pixel, soft_shadows) {}
+
 void PhotoRenderer::SetRays(const Frame& frame, int tile_x, int tile_y, raytrace::RayPacket& rays) const {
-  const int width = camera_.width * grid_;
-  const int height = camera_.height * grid_;
+  const int width = width_ * grid_;
+  const int height = height_ * grid_;
   for (int lane = 0; lane < static_cast<int>(raytrace::kPacket); ++lane) {
     const int x = tile_x * kPacketSide + lane % kPacketSide;
     const int y = tile_y * kPacketSide + lane / kPacketSide;
@@ -47,7 +64,7 @@ void PhotoRenderer::ShadeTile(const Frame& frame, const MovingScene& moving, int
                               std::vector<char>& row_masked) const {
   raytrace::RayPacket rays;
   SetRays(frame, tile_x, tile_y, rays);
-  const RayLight light = shader_.Trace(moving, {0.0F, static_cast<float>(1.0 / camera_.FocalX())}, rays);
+  const RayLight light = shader_.Trace(moving, {0.0F, static_cast<float>(pixel_angle_)}, rays);
   const float weight = 1.0F / static_cast<float>(grid_ * grid_);
   for (size_t lane = 0; lane < raytrace::kPacket; ++lane) {
     if (rays.valid[lane] == 0) continue;
@@ -65,11 +82,11 @@ void PhotoRenderer::ShadeTile(const Frame& frame, const MovingScene& moving, int
 Rendering PhotoRenderer::Render(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads,
                                 const std::function<void(double share)>& advance) const {
   Rendering out;
-  out.rgb_linear = image::ImageF(camera_.width, camera_.height, 3);
-  out.usable = image::Image8(camera_.width, camera_.height, 1, 255);
+  out.rgb_linear = image::ImageF(width_, height_, 3);
+  out.usable = image::Image8(width_, height_, 1, 255);
   const Frame frame{cam_from_enu.OriginInSource().cast<float>(), cam_from_enu.rotation.conjugate().toRotationMatrix().cast<float>()};
-  const int tiles_x = (camera_.width * grid_ + kPacketSide - 1) / kPacketSide;
-  const int tiles_y = (camera_.height * grid_ + kPacketSide - 1) / kPacketSide;
+  const int tiles_x = (width_ * grid_ + kPacketSide - 1) / kPacketSide;
+  const int tiles_y = (height_ * grid_ + kPacketSide - 1) / kPacketSide;
   std::vector<char> row_masked(static_cast<size_t>(tiles_y), 0);
   threads.ParallelFor(tiles_y, [&](int64_t tile_y, int /*thread*/) {
     for (int tile_x = 0; tile_x < tiles_x; ++tile_x) ShadeTile(frame, moving, tile_x, static_cast<int>(tile_y), out, row_masked);
@@ -81,20 +98,20 @@ Rendering PhotoRenderer::Render(const geo::Rigid3d& cam_from_enu, const MovingSc
 
 SurfaceImages PhotoRenderer::Surfaces(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  SurfaceImages out{image::ImageF(camera_.width, camera_.height, 1, kNan), image::ImageF(camera_.width, camera_.height, 3, kNan),
-                    image::Image8(camera_.width, camera_.height, 1, static_cast<uint8_t>(survey::SurfaceClass::kNone))};
+  SurfaceImages out{image::ImageF(width_, height_, 1, kNan), image::ImageF(width_, height_, 3, kNan),
+                    image::Image8(width_, height_, 1, static_cast<uint8_t>(survey::SurfaceClass::kNone))};
   const Vector3f origin = cam_from_enu.OriginInSource().cast<float>();
   const Eigen::Matrix3d enu_from_cam = cam_from_enu.rotation.conjugate().toRotationMatrix();
   const int packet = static_cast<int>(raytrace::kPacket);
-  threads.ParallelFor(camera_.height, [&](int64_t row, int /*thread*/) {
+  threads.ParallelFor(height_, [&](int64_t row, int /*thread*/) {
     const int y = static_cast<int>(row);
     raytrace::RayPacket rays;
     std::array<double, raytrace::kPacket> z_per_metre{};
-    for (int begin = 0; begin < camera_.width; begin += packet) {
-      const int n = std::min(packet, camera_.width - begin);
+    for (int begin = 0; begin < width_; begin += packet) {
+      const int n = std::min(packet, width_ - begin);
       for (int lane = 0; lane < packet; ++lane) {
         const auto slot = static_cast<size_t>(lane);
-        const Eigen::Vector3d in_cam = camera_.RayFromImg({std::min(begin + lane, camera_.width - 1) + 0.5, y + 0.5});
+        const Eigen::Vector3d in_cam = ray_from_img_({std::min(begin + lane, width_ - 1) + 0.5, y + 0.5});
         z_per_metre[slot] = in_cam.z();
         rays.Set(slot, origin, (enu_from_cam * in_cam).cast<float>(), 0.1F, kFarthestHit_m);
         if (lane >= n) rays.valid[slot] = 0;

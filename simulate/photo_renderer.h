@@ -7,6 +7,7 @@
 
 #include "core/base/thread_pool.h"
 #include "core/camera/camera.h"
+#include "core/camera/equirectangular.h"
 #include "core/geo/transform.h"
 #include "core/image/image.h"
 #include "simulate/ray_shader.h"
@@ -28,8 +29,10 @@ struct SurfaceImages {
 
 class PhotoRenderer {
  public:
-  // samples_per_pixel 1, 4 or 16, on a regular grid. Holds references: world and camera must outlive it.
+  // samples_per_pixel 1, 4 or 16, on a regular grid. Holds a reference: the world must outlive it.
   PhotoRenderer(const World& world, const camera::Camera& camera, int samples_per_pixel, bool soft_shadows);
+  // Of panoramas. The depth of their surfaces is along z, too, and so says little.
+  PhotoRenderer(const World& world, const camera::Equirectangular& panorama, int samples_per_pixel, bool soft_shadows);
 
   // The same image for any number of threads. `advance` is called by any of them with the shares of the work that they finish.
   Rendering Render(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads,
@@ -38,12 +41,16 @@ class PhotoRenderer {
   SurfaceImages Surfaces(const geo::Rigid3d& cam_from_enu, const MovingScene& moving, base::ThreadPool& threads) const;
 
  private:
-  struct Frame;  // one photo's pose in single precision
+  using RayFromImg = std::function<Eigen::Vector3d(const Eigen::Vector2d& pixel)>;  // unit direction in the camera's frame
+  struct Frame;                                                                     // one photo's pose in single precision
+  PhotoRenderer(const World& world, int width, int height, double pixel_angle, RayFromImg ray_from_img, int samples_per_pixel, bool soft_shadows);
   void SetRays(const Frame& frame, int tile_x, int tile_y, raytrace::RayPacket& rays) const;
   void ShadeTile(const Frame& frame, const MovingScene& moving, int tile_x, int tile_y, Rendering& out, std::vector<char>& row_masked) const;
 
   const World& world_;
-  const camera::Camera& camera_;
+  int width_, height_;  // pixels
+  double pixel_angle_;  // radians, in the middle
+  RayFromImg ray_from_img_;
   RayShader shader_;
   int grid_;                                       // samples per pixel side
   std::vector<Eigen::Vector3f> sample_direction_;  // camera frame, unit, (width * grid) x (height * grid)

@@ -22,6 +22,7 @@
 #include "simulate/edge_targets.h"
 #include "simulate/flight.h"
 #include "simulate/flights/level_flight.h"
+#include "simulate/flights/panorama_flight.h"
 #include "simulate/flights/video_flight.h"
 #include "simulate/model_frame.h"
 #include "simulate/photo_renderer.h"
@@ -40,7 +41,7 @@ namespace fs = std::filesystem;
 constexpr int kSeedsPerPhoto = 170;
 constexpr int kSeedsPerLevelPhoto = 600;  // most are on plain walls and in the sky, where no feature is
 constexpr const char* kStarted = "simulate.started";
-constexpr std::array<const char*, 5> kParts = {"images", "sparse", "truth", "control", "video"};
+constexpr std::array<const char*, 6> kParts = {"images", "sparse", "truth", "control", "video", "panoramas"};
 
 // Makes the folders. Removes an earlier simulation, but nothing else.
 void PrepareFolder(const fs::path& folder) {
@@ -135,6 +136,28 @@ void FilmFlight(const SimulateOptions& options, const PlaceSpec& place, const st
   base::LogInfo("simulate: a video of {} frames, {:.0f} s long", frames.size(), static_cast<double>(frames.size()) / options.video_fps);
 }
 
+// Panoramas from places of the flight.
+void TakePanoramas(const SimulateOptions& options, const PlaceSpec& place, const std::vector<PhotoPlan>& photos, const World& world,
+                   const geo::EnuFrame& frame, const fs::path& folder, base::ThreadPool& threads) {
+  const std::vector<PhotoPlan> plans = PlanPanoramas(photos, options.panoramas);
+  const camera::Equirectangular sphere{options.panorama_width, options.panorama_width / 2};
+  const PhotoRenderer renderer(world, sphere, options.samples_per_pixel, options.soft_shadows);
+  fs::create_directories(folder / "panoramas");
+  base::Progress progress("take panoramas", static_cast<double>(plans.size()), "panoramas");
+  for (const PhotoPlan& plan : plans) {
+    base::ThrowIfCancelled();
+    const Rendering rendering = renderer.Render(plan.cam_from_enu, world.MovingAt(plan.time_s), threads);
+    constexpr double kNoVignetting = 0.0;
+    const Eigen::Vector2d middle(0.5 * sphere.width, 0.5 * sphere.height);
+    WritePanorama(plan, Develop(rendering.rgb_linear, {LightRgb(plan), kNoVignetting, middle}), place.camera, frame, options.jpeg_quality,
+                  folder / "panoramas");
+    progress.Advance();
+  }
+  progress.Finish();
+  WritePanoramaPoses(plans, folder / "truth" / "panorama_poses.csv");
+  base::LogInfo("simulate: {} panoramas of {} x {} pixels", plans.size(), sphere.width, sphere.height);
+}
+
 }  // namespace
 
 SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder, base::ThreadPool& threads) {
@@ -197,6 +220,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   }
   progress.Finish();
   if (options.video_fps > 0) FilmFlight(options, place, photos, world, renderer, frame, folder, threads);
+  if (options.panoramas > 0) TakePanoramas(options, place, photos, world, frame, folder, threads);
   std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, place.camera, photos, seeds, place.seed, threads);
   summary.n_points = static_cast<int>(points.size());
   survey::ColmapModel model = MakeModel(place.camera, photos, std::move(points));

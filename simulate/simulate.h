@@ -13,6 +13,7 @@
 //   truth/exposure.json                brightness of every photo
 //   truth/buildings.json               position and size of every part of a building, and the outlines that parts have together
 //   video/flight.mp4, flight.SRT       with simulate.video_fps: the same flight filmed (flights/video_flight.h), and truth/video_poses.csv
+//   panoramas/PANO_0001.jpg            with simulate.panoramas: from places of the flight (flights/panorama_flight.h), and truth/panorama_poses.csv
 //   control/                           ground control as several programs write it (control_writer.h), with simulate.control_points or check_points
 //   simulate.json                      place, origin, options, suggested blocks, the true frame of a model without exact_frame; written last
 #pragma once

@@ -54,6 +54,8 @@ struct SimulateOptions {
   int trucks = 0;                         // 0..100, parked trucks and containers
   double ortho_cell_m = 0.0;              // 0 or 0.005..10, width of the cells of a true orthophoto; 0: none
   int video_fps = 0;                      // 0 or 1..60 frames per second of a video of the same flight; 0: none
+  int panoramas = 0;                      // 0..10000 panoramas at places of the flight; 0: none
+  int panorama_width = 2048;              // 64..16384 pixels, even
   int edge_targets = 0;                   // 0..100 slanted-edge targets on the ground, see edge_targets.h
   bool exact_frame = true;                // false: the COLMAP model is under a random similarity, as structure from motion makes it
   // Errors of the tags; none by default. See tag_faults.h.

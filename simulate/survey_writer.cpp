@@ -37,6 +37,10 @@ Json OptionsJson(SimulateOptions options) {
   if (options.ortho_cell_m == 0.0) json.erase("ortho_cell_m");
   if (options.edge_targets == 0) json.erase("edge_targets");
   if (options.video_fps == 0) json.erase("video_fps");
+  if (options.panoramas == 0) {
+    json.erase("panoramas");
+    json.erase("panorama_width");
+  }
   return json;
 }
 

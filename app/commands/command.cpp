@@ -144,6 +144,26 @@ void AddVideoFlags(CLI::App& command, const Overrides& overrides) {
   AddOptionFlag(command, overrides, "--video-limit", "prepare.video_limit", "most frames that are taken of all videos together; 0: any number");
 }
 
+void AddPanoramaFlags(CLI::App& command, const Overrides& overrides) {
+  command.add_flag_callback(
+      "--panoramas",
+      [overrides] {
+        overrides->push_back({"prepare.panoramas", "all"});
+      },
+      "take every photo that is twice as wide as high for a panorama of all directions, and not only those whose tags say so [prepare.panoramas]");
+  command
+      .add_option_function<std::string>(
+          "--rig",
+          [overrides](const std::string& file) {
+            const bool is_file = !file.empty() && file != "none";
+            overrides->push_back({"prepare.rig", is_file ? std::filesystem::absolute(file).lexically_normal().string() : file});
+          },
+          "COLMAP's rig_config.json of several cameras that take photos at once; none: every photo by itself [prepare.rig]")
+      ->type_name("FILE");
+  AddOptionFlag(command, overrides, "--nadir-mask", "prepare.nadir_mask_deg",
+                "half the angle in degrees of the cone straight down that is masked in panoramas: tripod, drone or who holds the camera");
+}
+
 void AddStatedFlags(CLI::App& command, const Overrides& overrides) {
   AddOptionFlag(command, overrides, "--up", "prepare.up",
                 "direction of up, where photos cannot tell it: x,y,z in the frame of the camera model, or cameras for the mean up of the photos");

@@ -66,6 +66,8 @@ void AddPhotosArgument(CLI::App& command, std::vector<std::string>& photos);
 std::vector<std::filesystem::path> VideosAmong(const std::vector<std::string>& photos);
 // --video-limit.
 void AddVideoFlags(CLI::App& command, const Overrides& overrides);
+// --panoramas, --rig: a file, stored as an absolute path; --nadir-mask.
+void AddPanoramaFlags(CLI::App& command, const Overrides& overrides);
 // --up, --scale-bar (may be repeated).
 void AddStatedFlags(CLI::App& command, const Overrides& overrides);
 // --boundary: a file; stored as an absolute path, as later commands may run elsewhere.

@@ -21,6 +21,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   AddControlFlags(*command, overrides);
   AddStatedFlags(*command, overrides);
   AddVideoFlags(*command, overrides);
+  AddPanoramaFlags(*command, overrides);
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddOptionFlag(*command, overrides, "--masks", "prepare.masks",
@@ -30,6 +31,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
       "Examples:\n"
       "  skyquilt prepare photos/ -o out\n"
       "  skyquilt prepare DJI_0001.MP4 DJI_0002.MP4 -o out --video-limit 300\n"
+      "  skyquilt prepare panoramas/ -o out --nadir-mask 25\n"
       "  skyquilt prepare photos/ --model sparse/0 -o out\n"
       "  skyquilt prepare photos/ --model odm/opensfm/reconstruction.json -o out\n"
       "  skyquilt prepare photos/ -o out --holdout every:10\n"

@@ -57,6 +57,7 @@ void AddRun(CLI::App& app, CommandState& state) {
   AddControlFlags(*command, overrides);
   AddStatedFlags(*command, overrides);
   AddVideoFlags(*command, overrides);
+  AddPanoramaFlags(*command, overrides);
   AddOptionFlag(*command, overrides, "--blocks", "partition.blocks", "rows x columns such as 2x2, size:<metres> per block, or auto");
   AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
                 "altitude above ground in metres of each block, row by row from the south-west, separated by commas");

@@ -30,11 +30,19 @@ void AddSimulate(CLI::App& app, CommandState& state) {
         overrides->push_back({"simulate.video_fps", "5"});
       },
       "also film the flight, with 5 frames per second, into video/flight.mp4, with subtitles as drones write them; other rates: simulate.video_fps");
+  command->add_flag_callback(
+      "--panoramas",
+      [overrides] {
+        overrides->push_back({"simulate.panoramas", "12"});
+      },
+      "also take 12 panoramas of all directions along the flight, into panoramas/, with GPano tags as 360-degree cameras write them; other numbers: "
+      "simulate.panoramas");
   command->add_flag("--restart", flags->restart, "remove an earlier survey in the folder first");
   command->footer(
       "Examples:\n"
       "  skyquilt simulate hamlet -o data/hamlet\n"
       "  skyquilt simulate hamlet -o data/film --video --image-width 640\n"
+      "  skyquilt simulate hamlet -o data/walk --flight street --panoramas --set simulate.tags=all\n"
       "  skyquilt simulate town -o data/town --seed 7 --altitudes 60,80,60,80\n"
       "  skyquilt simulate hamlet -o data/street --flight street\n"
       "  skyquilt simulate tidalflat -o data/flat --set simulate.exposure_jumps_stops=1.5");

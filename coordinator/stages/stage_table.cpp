@@ -1,4 +1,6 @@
 // The table of stages.
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "coordinator/stages/stage.h"
@@ -11,6 +13,7 @@
 #include "core/survey/made_masks.h"
 #include "prepare/georeference/tags/photo_positions.h"
 #include "prepare/input/masks/masks.h"
+#include "prepare/rigs/rig_config.h"
 #include "prepare/video/find_videos.h"
 #include "tour/export/staged_folder.h"
 
@@ -72,6 +75,37 @@ const std::vector<std::string>& VideoOptionNames() {
   return names;
 }
 
+// They matter to panoramas and rigs alone: they count where they are not the default.
+const std::vector<std::string>& RigOptionNames() {
+  static const std::vector<std::string> names = {"prepare.panoramas",
+                                                 "prepare.panorama_views",
+                                                 "prepare.panorama_pitches",
+                                                 "prepare.panorama_fov_deg",
+                                                 "prepare.panorama_width",
+                                                 "prepare.nadir_mask_deg",
+                                                 "prepare.rig"};
+  return names;
+}
+
+std::vector<std::string> OptionsAmongInputs() {
+  std::vector<std::string> names = {"prepare.holdout_poses", "prepare.alpha", "prepare.bands", "prepare.photos"};
+  names.insert(names.end(), VideoOptionNames().begin(), VideoOptionNames().end());
+  names.insert(names.end(), RigOptionNames().begin(), RigOptionNames().end());
+  return names;
+}
+
+void AddRigInputs(const Pipeline& pipeline, FlatOptions* inputs) {
+  const FlatOptions usual = Select(Settings().Flat(), RigOptionNames());
+  for (const auto& [name, value] : Select(pipeline.settings.Flat(), RigOptionNames())) {
+    if (usual.at(name) != value) (*inputs)[name] = value;
+  }
+  if (!std::filesystem::is_directory(pipeline.photos)) return;
+  const std::filesystem::path images = pipeline.photos / "images";
+  const std::filesystem::path rig =
+      prepare::rigs::FindRigConfig(std::filesystem::is_directory(images) ? images : pipeline.photos, pipeline.settings.prepare.rig);
+  if (!rig.empty()) (*inputs)["rig"] = FileIdentity(rig);
+}
+
 // Files that only some surveys have count where they are, and the poses of held-out photos, the bands and what transparency means where
 // they are not the default, so that
 // records of older programs stay valid.
@@ -108,6 +142,7 @@ FlatOptions PrepareInputs(const Pipeline& pipeline) {
   if (!masks.empty()) inputs["masks"] = masks;
   if (!options.bands.empty()) inputs["prepare.bands"] = options.bands;
   if (options.alpha != prepare::PrepareOptions().alpha) inputs["prepare.alpha"] = options.alpha;
+  AddRigInputs(pipeline, &inputs);
   return inputs;
 }
 
@@ -226,15 +261,25 @@ bool MakesBuildings(const Settings& settings) {
   return settings.buildings.enabled && settings.surface.enabled && settings.surface.cloud && settings.surface.maps;
 }
 
+// They count where they are asked for, so that surveys of older programs stay valid.
+std::vector<std::string> SimulatedExtras() {
+  return {"simulate.video_fps", "simulate.panoramas", "simulate.panorama_width"};
+}
+
 std::vector<Stage> MakeTable() {
   return {
       {.name = "simulate",
        .options = {"simulate."},
-       .ignored_options = {"simulate.video_fps"},  // an input, so that surveys of older programs stay valid
+       .ignored_options = SimulatedExtras(),  // inputs
        .inputs =
            [](const Pipeline& pipeline) {
-             const int fps = pipeline.settings.simulate.video_fps;
-             return fps > 0 ? FlatOptions{{"simulate.video_fps", std::to_string(fps)}} : FlatOptions();
+             const simulate::SimulateOptions& options = pipeline.settings.simulate;
+             FlatOptions inputs;
+             if (options.video_fps > 0) inputs["simulate.video_fps"] = std::to_string(options.video_fps);
+             if (options.panoramas > 0) {
+               inputs["simulate.panoramas"] = fmt::format("{} of {} pixels", options.panoramas, options.panorama_width);
+             }
+             return inputs;
            },
        .outputs = [](const Project& p) { return Paths{p.SimulatedFolder()}; },
        .completion_files = [](const Project& p) { return Paths{p.folder / "simulate.json"}; },
@@ -243,8 +288,7 @@ std::vector<Stage> MakeTable() {
        .dated = false},
       {.name = "prepare",
        .options = {"prepare."},
-       .ignored_options = {"prepare.holdout_poses", "prepare.alpha", "prepare.bands", "prepare.photos", "prepare.video_overlap",
-                           "prepare.video_limit", "prepare.video_size", "prepare.video_clock_offset_s"},  // inputs
+       .ignored_options = OptionsAmongInputs(),
        .inputs = PrepareInputs,
        .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
        .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },

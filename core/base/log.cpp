@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <memory>
+#include <mutex>
 
 #include "core/base/errors.h"
 #include "core/base/log_file.h"
@@ -59,6 +60,9 @@ spdlog::level::level_enum SpdlogLevel(LogLevel level) {
 void InitLog(bool verbose, const std::string& prefix) {
   const auto sink = std::make_shared<StderrSink>();
   sink->set_pattern(Pattern("%H:%M:%S", !prefix.empty()));
+  // Tests run ranks as threads, which may come here at the same time.
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> lock(mutex);
   FilesOfLog() = std::make_shared<Files>();
   const auto logger = std::make_shared<spdlog::logger>(prefix, spdlog::sinks_init_list{sink, FilesOfLog()});
   logger->set_level(verbose ? spdlog::level::debug : spdlog::level::info);

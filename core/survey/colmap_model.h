@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct ColmapImage {
   uint32_t camera_id = 0;
   std::string name;
   geo::Rigid3d cam_from_world;
+  // Images of one number were taken at once by the cameras of a rig; negative: alone. Files of models do not hold this.
+  int shot = -1;
+  geo::Rigid3d cam_from_rig = {};  // in the model's units
 };
 
 struct ColmapPoint {
@@ -34,6 +38,7 @@ struct ColmapModel {
   std::map<uint32_t, camera::Camera> cameras;
   std::vector<ColmapImage> images;
   std::vector<ColmapPoint> points;
+  std::set<uint32_t> exact_cameras;  // those that no adjustment changes, as they are known exactly; files of models do not hold this
 };
 
 // Where an image shows a point: what the bundle adjustment fitted.

@@ -204,6 +204,25 @@ void ReadOriginalSize(const Exiv2::ExifData& exif, PhotoTags& tags) {
   tags.original_height = static_cast<int>(*height);
 }
 
+std::optional<PanoramaTags> ReadPanorama(const Exiv2::XmpData& xmp) {
+  if (XmpText(xmp, "ProjectionType") != "equirectangular") return std::nullopt;
+  PanoramaTags panorama;
+  panorama.heading_deg = XmpNumber(xmp, "PoseHeadingDegrees");
+  panorama.pitch_deg = XmpNumber(xmp, "PosePitchDegrees");
+  panorama.roll_deg = XmpNumber(xmp, "PoseRollDegrees");
+  const auto pixels = [&xmp](std::string_view name) {
+    constexpr double kMost = 1e6;
+    const double value = XmpNumber(xmp, name).value_or(0.0);
+    return value > 0.0 && value <= kMost ? static_cast<int>(value) : 0;
+  };
+  panorama.full_width = pixels("FullPanoWidthPixels");
+  panorama.full_height = pixels("FullPanoHeightPixels");
+  panorama.left = pixels("CroppedAreaLeftPixels");
+  panorama.top = pixels("CroppedAreaTopPixels");
+  panorama.area_width = pixels("CroppedAreaImageWidthPixels");
+  return panorama;
+}
+
 // In APEX 0 is a value (1 s, f/1), but not beside another tag for the same that was left at 0.
 std::optional<double> Apex(const Exiv2::ExifData& exif, const char* key, const std::optional<double>& other) {
   const auto apex = ExifNumber(exif, key);
@@ -300,6 +319,7 @@ PhotoTags ReadPhotoTags(const std::filesystem::path& file) {
     tags.calibrated_focal_px = Positive(XmpNumber(xmp, "CalibratedFocalLength"));
     tags.band_names = ReadBandNames(xmp);
     ReadOriginalSize(exif, tags);
+    tags.panorama = ReadPanorama(xmp);
     const double orientation = ExifNumber(exif, "Exif.Image.Orientation").value_or(1.0);
     if (IsOrientation(orientation)) tags.orientation = static_cast<int>(orientation);
     tags.capture_time_s = ReadCaptureTime(exif);

@@ -18,6 +18,18 @@ constexpr bool IsPlausibleFocal35(double focal_mm) {
   return focal_mm >= kShortestFocal35_mm && focal_mm <= kLongestFocal35_mm;
 }
 
+// What GPano's XMP tags say of a panorama (Google, "Photo Sphere XMP Metadata"), of ProjectionType equirectangular alone.
+struct PanoramaTags {
+  std::optional<double> heading_deg;  // PoseHeadingDegrees: of the middle of the sphere, clockwise from north
+  std::optional<double> pitch_deg;    // PosePitchDegrees: of the same, up is positive; missing: 0, the horizon is in the middle
+  std::optional<double> roll_deg;     // PoseRollDegrees: the horizon turns counter-clockwise in the picture as it grows
+  // Pixels of the whole sphere, and the part of it that the picture shows (FullPano..., CroppedArea...). All 0: the picture is the whole. Programs
+  // that make pictures smaller leave these as they were: area_width need not be the picture's width.
+  int full_width = 0, full_height = 0;
+  int left = 0, top = 0;
+  int area_width = 0;
+};
+
 struct PhotoTags {
   // Numbers that are 0 where 0 is none that a camera can have (focal length, exposure time, ...) count as missing.
   std::optional<geo::Geodetic> gps;  // latitude and longitude from XMP if present (some firmware truncates EXIF), else EXIF; both 0 counts as
@@ -42,8 +54,9 @@ struct PhotoTags {
   int orientation = 1;                   // EXIF Orientation, 1 to 8, see core/survey/orientation.h; 1 when missing or unknown
   std::optional<double> capture_time_s;  // DateTimeOriginal (+ SubSec) in seconds since 1970, by the camera's clock
   std::string make, model;
-  std::string position_file;           // that `gps` comes from; empty: the photo itself
-  std::vector<std::string> zero_tags;  // names of tags that are 0 and count as missing therefore
+  std::optional<PanoramaTags> panorama;  // nothing for photos that do not say that they are equirectangular
+  std::string position_file;             // that `gps` comes from; empty: the photo itself
+  std::vector<std::string> zero_tags;    // names of tags that are 0 and count as missing therefore
 };
 
 // Tags that are missing or unreadable stay empty. Throws base::InputError only if the file itself cannot be read as an image.

@@ -20,6 +20,7 @@ std::unique_lock<std::mutex> LockExiv2() {
     Exiv2::enableBMFF(true);
     Exiv2::XmpProperties::registerNs("http://www.dji.com/drone-dji/1.0/", "drone-dji");
     Exiv2::XmpProperties::registerNs("http://pix4d.com/camera/1.0/", "Camera");
+    Exiv2::XmpProperties::registerNs("http://ns.google.com/photos/1.0/panorama/", "GPano");
     return true;
   }();
   static_cast<void>(ready);
@@ -83,6 +84,20 @@ void SetAccuracy(Exiv2::ExifData& exif, Exiv2::XmpData& xmp, const PhotoTags& ta
   if (tags.vertical_accuracy_m) xmp["Xmp.Camera.GPSZAccuracy"] = Format("%.5f", *tags.vertical_accuracy_m);
 }
 
+void SetPanorama(Exiv2::XmpData& xmp, const PanoramaTags& panorama) {
+  xmp["Xmp.GPano.ProjectionType"] = "equirectangular";
+  xmp["Xmp.GPano.UsePanoramaViewer"] = "True";
+  if (panorama.heading_deg) xmp["Xmp.GPano.PoseHeadingDegrees"] = Format("%.2f", *panorama.heading_deg);
+  if (panorama.pitch_deg) xmp["Xmp.GPano.PosePitchDegrees"] = Format("%.2f", *panorama.pitch_deg);
+  if (panorama.roll_deg) xmp["Xmp.GPano.PoseRollDegrees"] = Format("%.2f", *panorama.roll_deg);
+  if (panorama.full_width == 0 || panorama.full_height == 0) return;
+  xmp["Xmp.GPano.FullPanoWidthPixels"] = std::to_string(panorama.full_width);
+  xmp["Xmp.GPano.FullPanoHeightPixels"] = std::to_string(panorama.full_height);
+  xmp["Xmp.GPano.CroppedAreaLeftPixels"] = std::to_string(panorama.left);
+  xmp["Xmp.GPano.CroppedAreaTopPixels"] = std::to_string(panorama.top);
+  if (panorama.area_width > 0) xmp["Xmp.GPano.CroppedAreaImageWidthPixels"] = std::to_string(panorama.area_width);
+}
+
 // In EXIF, as the direction is not known that DJI's FlightXSpeed and FlightYSpeed need.
 void SetSpeed(Exiv2::ExifData& exif, double speed_mps) {
   exif["Exif.GPSInfo.GPSSpeedRef"] = "K";
@@ -137,6 +152,7 @@ void WritePhotoTags(const PhotoTags& tags, const std::filesystem::path& file) {
     if (tags.original_height > 0) exif["Exif.Photo.PixelYDimension"] = static_cast<uint32_t>(tags.original_height);
     if (tags.orientation != 1) exif["Exif.Image.Orientation"] = static_cast<uint16_t>(tags.orientation);
     if (tags.capture_time_s) SetCaptureTime(exif, *tags.capture_time_s);
+    if (tags.panorama) SetPanorama(xmp, *tags.panorama);
     image->writeMetadata();
   } catch (const Exiv2::AnyError& error) {
     throw base::InputError(file, std::string("photo tags cannot be written (") + error.what() + ")",

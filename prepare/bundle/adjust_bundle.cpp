@@ -5,11 +5,14 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "core/base/cancel.h"
 #include "prepare/bundle/bundle_costs.h"
+#include "prepare/bundle/shots.h"
 
 namespace skyquilt::prepare::bundle {
 namespace {
@@ -44,7 +47,11 @@ std::vector<int> HeldNumbersOf(const BundleLens& lens) {
 
 bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration,
                   Eigen::Vector3d* shift) {
+  // One for each photo, or for each shot of a rig: then the first photo's.
   std::vector<PoseNumbers> poses(bundle.photos.size());
+  std::vector<uint32_t> pose_of(bundle.photos.size());
+  std::iota(pose_of.begin(), pose_of.end(), 0U);
+  const std::vector<Shot> shots = PlacedShots(bundle);
   std::vector<Lens> lenses;
   std::vector<Eigen::Vector3d> points;
   Eigen::Vector3d new_shift = shift != nullptr ? *shift : Eigen::Vector3d::Zero();
@@ -53,6 +60,12 @@ bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const
   for (size_t i = 0; i < poses.size(); ++i) {
     Eigen::Map<Eigen::Vector4d>(poses[i].data()) = bundle.photos[i].cam_from_enu.coeffs();
     Eigen::Map<Eigen::Vector3d>(poses[i].data() + 4) = bundle.photos[i].centre;
+  }
+  for (const Shot& shot : shots) {
+    PoseNumbers& pose = poses[shot.photos.front()];
+    Eigen::Map<Eigen::Vector4d>(pose.data()) = shot.pose.rig_from_enu.coeffs();
+    Eigen::Map<Eigen::Vector3d>(pose.data() + 4) = shot.pose.centre;
+    for (const uint32_t photo : shot.photos) pose_of[photo] = shot.photos.front();
   }
 
   // Must outlive the problem, which does not own them.
@@ -88,8 +101,13 @@ bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const
       if (bundle.agrees[e] == 0 || !bundle.photos[photo].placed) continue;
       const auto lens = static_cast<size_t>(bundle.photos[photo].lens);
       const double sigma_px = bundle.lenses[lens].unit_px * (bundle.sigma.empty() ? 1.0 : bundle.sigma[e]);
-      problem.AddResidualBlock(new ReprojectionCost(bundle.pixel[e], sigma_px), loss.get(), poses[photo].data(), lenses[lens].data(), point);
-      sees[photo] = 1;
+      const uint32_t pose = pose_of[photo];
+      ceres::CostFunction* cost =
+          bundle.photos[photo].shot < 0
+              ? static_cast<ceres::CostFunction*>(new ReprojectionCost(bundle.pixel[e], sigma_px))
+              : static_cast<ceres::CostFunction*>(new RigReprojectionCost(bundle.photos[photo].cam_from_rig, bundle.pixel[e], sigma_px));
+      problem.AddResidualBlock(cost, loss.get(), poses[pose].data(), lenses[lens].data(), point);
+      sees[pose] = 1;
       used[lens] = 1;
     }
     if (!problem.HasParameterBlock(point)) continue;
@@ -100,7 +118,7 @@ bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const
   }
   for (size_t i = 0; i < poses.size(); ++i) {
     if (sees[i] == 0) continue;
-    const BundlePhoto& photo = bundle.photos[i];
+    const BundlePhoto photo = TagsOfPose(bundle, shots, static_cast<uint32_t>(i));
     problem.SetManifold(poses[i].data(), &pose_manifold);
     ordering->AddElementToGroup(poses[i].data(), kPoseGroup);
     if (photo.gps && shift != nullptr) {
@@ -117,7 +135,7 @@ bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const
   for (size_t i = 0; i < lenses.size(); ++i) {
     if (used[i] == 0) continue;
     ordering->AddElementToGroup(lenses[i].data(), kLensGroup);
-    if (!stage.free_lens) {
+    if (!stage.free_lens || bundle.lenses[i].exact) {
       problem.SetParameterBlockConstant(lenses[i].data());
       continue;
     }
@@ -144,6 +162,13 @@ bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const
   base::ThrowIfCancelled();
   if (!summary.IsSolutionUsable()) return false;
 
+  for (const Shot& shot : shots) {
+    const uint32_t first = shot.photos.front();
+    if (std::exchange(sees[first], 0) == 0) continue;
+    const PoseNumbers& pose = poses[first];
+    const RigPose adjusted{Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(pose.data())), Eigen::Map<const Eigen::Vector3d>(pose.data() + 4)};
+    for (const uint32_t photo : shot.photos) PlaceByRig(adjusted, bundle.photos[photo]);
+  }
   for (size_t i = 0; i < poses.size(); ++i) {
     if (sees[i] == 0) continue;
     bundle.photos[i].cam_from_enu = Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(poses[i].data()));

@@ -99,6 +99,28 @@ bool ReprojectionCost::Evaluate(double const* const* parameters, double* residua
   return true;
 }
 
+bool RigReprojectionCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+  const Eigen::Quaterniond rotation = RotationOf(parameters[0]);
+  Lens lens;
+  std::copy_n(parameters[1], lens.size(), lens.begin());
+  const Eigen::Vector3d x_in_rig = rotation * (CopyOf<3>(parameters[2]) - CentreOf(parameters[0]));
+  LensJacobian jacobian;
+  const Eigen::Vector2d pixel = Project(lens, cam_from_rig_ * x_in_rig, jacobians != nullptr ? &jacobian : nullptr);
+  VectorAt<2>(residuals) = (pixel - pixel_) / unit_px_;
+  if (jacobians == nullptr) return true;
+  const Eigen::Matrix<double, 2, 3> by_x_in_rig = jacobian.by_point * cam_from_rig_.rotation.toRotationMatrix() / unit_px_;
+  const Eigen::Matrix<double, 2, 3> by_x = by_x_in_rig * rotation.toRotationMatrix();
+  if (jacobians[0] != nullptr) {
+    auto by_pose = MatrixAt<2, 7>(jacobians[0]);
+    by_pose.leftCols<3>() = -by_x_in_rig * CrossOf(x_in_rig);
+    by_pose.middleCols<3>(3) = -by_x;
+    by_pose.col(6).setZero();
+  }
+  if (jacobians[1] != nullptr) MatrixAt<2, 8>(jacobians[1]) = jacobian.by_lens / unit_px_;
+  if (jacobians[2] != nullptr) MatrixAt<2, 3>(jacobians[2]) = by_x;
+  return true;
+}
+
 bool PlaceCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
   VectorAt<3>(residuals) = (CentreOf(parameters[0]) - gps_).cwiseQuotient(sigma_);
   if (jacobians != nullptr && jacobians[0] != nullptr) {

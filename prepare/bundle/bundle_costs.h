@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
+#include "core/geo/transform.h"
 #include "prepare/bundle/adjusted_lens.h"
 
 namespace skyquilt::prepare::bundle {
@@ -33,6 +34,19 @@ class ReprojectionCost : public ceres::SizedCostFunction<2, 7, 8, 3> {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
+  Eigen::Vector2d pixel_;
+  double unit_px_;
+};
+
+// The same for a camera of a rig: parameter blocks pose of the rig, lens, point.
+class RigReprojectionCost : public ceres::SizedCostFunction<2, 7, 8, 3> {
+ public:
+  RigReprojectionCost(const geo::Rigid3d& cam_from_rig, const Eigen::Vector2d& pixel, double unit_px)
+      : cam_from_rig_(cam_from_rig), pixel_(pixel), unit_px_(unit_px) {}
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  geo::Rigid3d cam_from_rig_;
   Eigen::Vector2d pixel_;
   double unit_px_;
 };

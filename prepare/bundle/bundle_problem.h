@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/camera/camera.h"
+#include "core/geo/transform.h"
 #include "prepare/bundle/adjusted_lens.h"
 
 namespace skyquilt::prepare::bundle {
@@ -32,6 +33,9 @@ struct BundlePhoto {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // ENU metres
   bool placed = false;                               // has a pose
   int lens = 0;                                      // index of its lens
+  // Photos with the same number were taken at once by the cameras of a rig, and have one pose (shots.h); negative: alone.
+  int shot = -1;
+  geo::Rigid3d cam_from_rig = {};  // metres, as ENU
   // What tags say.
   std::optional<Eigen::Vector3d> gps;  // ENU metres; a height without a tag is that of the others
   Eigen::Vector3d gps_sigma = Eigen::Vector3d(3.0, 3.0, 5.0);
@@ -45,6 +49,7 @@ struct BundleLens {
   double focal_sigma = 0.05;  // of the initial focal length, relative, one standard deviation
   double unit_px = 1.0;       // errors are counted in pixels of a photo of 1600 pixels width, so that thresholds suit every camera
   bool hold_focal = false;    // the focal length stays what it is
+  bool exact = false;         // nothing of it is adjusted
   bool free_centre = false;   // the principal point is adjusted too
 };
 

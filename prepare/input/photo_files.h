@@ -2,13 +2,25 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "core/geo/transform.h"
 #include "core/survey/exif.h"
 
 namespace skyquilt::prepare::input {
+
+// Where a camera is on the rig that took a photo.
+struct RigPlace {
+  std::string rig;            // file that describes it, for messages
+  std::string shot;           // the same for all photos that were taken at once
+  std::string camera;         // the same for all photos of one of the rig's cameras
+  geo::Rigid3d cam_from_rig;  // metres
+  // The photo is a view that was computed: without distortion, with this focal length in pixels and its principal point in the middle.
+  std::optional<double> exact_focal_px = {};
+};
 
 struct PhotoFile {
   std::string name;  // relative to the root, '/' separated
@@ -18,6 +30,7 @@ struct PhotoFile {
   bool converted = false;  // COLMAP reads a copy of 8 bits without these tags (plain_photos.h)
   bool filled = false;     // that copy has no transparency any more (prepare.alpha)
   std::string mask = {};   // path of its mask (masks/masks.h); empty: none
+  std::optional<RigPlace> rig = {};
 };
 
 struct PhotoSet {

@@ -5,6 +5,7 @@
 
 #include "core/base/log.h"
 #include "prepare/poses/retrieval.h"
+#include "prepare/poses/rig_pairs.h"
 
 namespace skyquilt::prepare::poses {
 namespace {
@@ -21,12 +22,19 @@ PhotoPairs ChoosePairs(const std::vector<input::PhotoFile>& photos, const PairRu
     base::LogInfo("pairs: all {} of {} photos", n * (n - std::min<size_t>(n, 1)) / 2, n);
     return AllPairs(n);
   }
+  const PhotoPairs of_rigs = PairsOfRigs(photos, rules.shot_neighbors);
+  if (RigsTellAllPairs(photos)) {
+    base::LogInfo("pairs: {} of {} possible ones of {} photos, by the places of their shots and where they look", of_rigs.size(), n * (n - 1) / 2, n);
+    return of_rigs;
+  }
   const std::vector<std::optional<PhotoPlace>> places = FindPlaces(photos);
   std::vector<uint32_t> without;
   for (uint32_t photo = 0; photo < n; ++photo) {
     if (!places[photo]) without.push_back(photo);
   }
   PhotoPairs pairs = PairsInSpace(places, rules);
+  pairs.insert(pairs.end(), of_rigs.begin(), of_rigs.end());
+  SortPairs(pairs);
   const size_t n_in_space = pairs.size();
 
   std::optional<PhotoIndex> index;

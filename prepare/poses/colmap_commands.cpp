@@ -121,7 +121,8 @@ void MakeModels(const ColmapJob& job, const ColmapSettings& settings, size_t n_p
             fmt::format("{:g}", flags.ba_global_images_ratio), "--Mapper.ba_global_points_ratio", fmt::format("{:g}", flags.ba_global_points_ratio),
             "--Mapper.ba_global_max_refinements", std::to_string(flags.ba_global_max_refinements)});
   }
-  if (settings.hold_focal) Append(command.arguments, {"--Mapper.ba_refine_focal_length", "0"});
+  if (settings.hold_focal && !settings.hold_lens) Append(command.arguments, {"--Mapper.ba_refine_focal_length", "0"});
+  if (settings.hold_lens) Append(command.arguments, {"--Mapper.ba_refine_focal_length", "0", "--Mapper.ba_refine_extra_params", "0"});
   RunWithProgress(job, command, "find poses", n_photos);
 }
 

@@ -11,11 +11,13 @@
 namespace skyquilt::prepare::poses {
 
 // What all commands need. `fast`: FastColmapFlags instead of COLMAP's defaults. `hold_focal`: the mapper keeps the focal lengths of the tags.
+// `hold_lens`: and all else of the lenses.
 struct ColmapSettings {
   std::filesystem::path program;
   int n_threads = 1;
   bool fast = false;
   bool hold_focal = false;
+  bool hold_lens = false;
 };
 
 // All throw base::InputError that names the log when COLMAP fails, base::Interrupted when asked to stop.

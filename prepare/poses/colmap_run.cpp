@@ -18,6 +18,7 @@
 #include "prepare/poses/focal_check.h"
 #include "prepare/poses/loose_photos.h"
 #include "prepare/poses/seed_model.h"
+#include "prepare/poses/shot_poses.h"
 
 namespace skyquilt::prepare::poses {
 namespace {
@@ -43,10 +44,12 @@ struct StepHashes {
 std::string PairInputs(const std::vector<input::PhotoFile>& photos, const PairRules& rules) {
   std::string text = fmt::format("pairs {} {} {} {} {} {} {} {}\n", rules.all_below, rules.neighbors, rules.sectors, rules.sector_reach,
                                  rules.position_neighbors, rules.similar, rules.name_neighbors, rules.links);
+  if (AnyRig(photos)) text += fmt::format("{} shots\n", rules.shot_neighbors);
   for (const input::PhotoFile& photo : photos) {
     const survey::PhotoTags& tags = photo.tags;
     text += tags.gps ? fmt::format("{:.9f} {:.9f}", tags.gps->latitude_deg, tags.gps->longitude_deg) : "-";
-    text += " " + TagText(tags.gimbal_pitch_deg) + " " + TagText(tags.gimbal_yaw_deg) + " " + TagText(tags.relative_altitude_m) + "\n";
+    text +=
+        " " + TagText(tags.gimbal_pitch_deg) + " " + TagText(tags.gimbal_yaw_deg) + " " + TagText(tags.relative_altitude_m) + "\n" + RigInputs(photo);
   }
   return text;
 }
@@ -63,6 +66,7 @@ StepHashes HashSteps(const Attempt& attempt, const std::vector<input::PhotoFile>
     text += fmt::format("fast {} {} {} {}\n", flags.ba_global_function_tolerance, flags.ba_global_images_ratio, flags.ba_global_points_ratio,
                         flags.ba_global_max_refinements);
   }
+  if (attempt.settings.hold_lens) text += "lenses held\n";
   if (attempt.settings.hold_focal) text += "focal lengths of the tags\n";
   hashes.model = base::HashHex(text);
   return hashes;
@@ -103,6 +107,17 @@ FoundModel WithoutLoosePhotos(const ColmapJob& job, const FoundModel& found) {
   return {folder, model.images.size()};
 }
 
+// The model, or one in which the photos of each shot of a rig have one pose. `hash`: of what the model depends on.
+FoundModel PlacedByRigs(const Attempt& attempt, const FoundModel& found, const std::string& hash, const std::vector<input::PhotoFile>& photos,
+                        base::ThreadPool& threads) {
+  if (!AnyRig(photos)) return found;
+  std::string text = hash + found.folder.string() + "\n";
+  for (const input::PhotoFile& photo : photos) text += RigInputs(photo);
+  const fs::path folder = attempt.job.folder / (attempt.job.models + "_rigs");
+  RunStep(attempt.job, {kRigStep, base::HashHex(text)}, {}, [&] { PlaceByRigs(attempt.job, found.folder, photos, folder, threads); });
+  return {folder, survey::CountColmapImages(folder)};
+}
+
 FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std::vector<input::PhotoFile>& photos, const PoseOptions& options,
                      base::ThreadPool& threads) {
   const ColmapJob& job = attempt.job;
@@ -112,12 +127,13 @@ FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std
     RunStep(job, {kSeededStep, hashes.seeded}, {}, [&] { SeedModel(job, photos, threads); });
     if (const std::optional<FoundModel> seeded = SeededModelOf(job)) {
       const std::optional<FarFocal> far = FarFocalOf(job, *seeded);
-      if (!far) return *seeded;
+      if (!far) return PlacedByRigs(attempt, *seeded, hashes.seeded, photos, threads);
       base::LogInfo("poses by tags and matches are left to COLMAP's mapper: they need {}", far->Text());
     }
   }
   RunStep(job, mapper, {}, [&] { MakeModels(job, attempt.settings, photos.size(), options); });
-  return options.fast ? WithoutLoosePhotos(job, LargestModel(job)) : LargestModel(job);
+  const FoundModel mapped = options.fast ? WithoutLoosePhotos(job, LargestModel(job)) : LargestModel(job);
+  return PlacedByRigs(attempt, mapped, hashes.model, photos, threads);
 }
 
 // What an attempt gave.
@@ -182,7 +198,7 @@ fs::path RunColmap(const ColmapJob& job, const std::vector<input::PhotoFile>& ph
     throw base::InputError(options.colmap, "there is no such program",
                            "Install COLMAP (Debian: apt install colmap), set prepare.colmap to its path, or give a model with --model");
   }
-  const ColmapSettings settings{.program = program, .n_threads = threads.size(), .fast = options.fast};
+  const ColmapSettings settings{.program = program, .n_threads = threads.size(), .fast = options.fast, .hold_lens = AllExact(photos)};
   const Attempt first{job, settings, options.fast ? std::optional(PairRules{}) : std::nullopt, options.fast && options.seed_poses};
   std::vector<Outcome> outcomes = {Try(first, photos, options, threads, ranks)};
   if (!options.fast || outcomes.front().reason.empty()) return ChooseModel(outcomes);

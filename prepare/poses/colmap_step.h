@@ -60,5 +60,7 @@ constexpr const char* kNoModelFix = "The photos may overlap too little or be blu
 // Make the models of the job's folder `models`; the other steps fill the database.
 constexpr const char* kModelStep = "model";
 constexpr const char* kHeldFocalStep = "model_held_focal";  // with the focal lengths of the tags
+// Makes a model with one pose per shot of a rig of it, or of one by tags.
+constexpr const char* kRigStep = "rigs";
 
 }  // namespace skyquilt::prepare::poses

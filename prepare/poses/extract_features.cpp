@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/survey/colmap_merge.h"
 #include "prepare/poses/focal_check.h"
+#include "prepare/poses/shot_poses.h"
 
 namespace skyquilt::prepare::poses {
 namespace {
@@ -23,7 +25,29 @@ fs::path PartsFolder(const ColmapJob& job) {
 std::string CameraKey(const input::PhotoFile& photo) {
   const survey::PhotoTags& tags = photo.tags;
   return std::to_string(photo.width) + "x" + std::to_string(photo.height) + "|" + tags.make + "|" + tags.model + "|" +
-         (tags.focal_length_mm ? std::to_string(*tags.focal_length_mm) : "");
+         (tags.focal_length_mm ? std::to_string(*tags.focal_length_mm) : "") + (photo.rig ? "|" + LensOfRig(*photo.rig) : "");
+}
+
+// Views that were computed have no distortion, and COLMAP reads no focal length in their tags that is better than a whole millimetre.
+void SetExactLenses(const std::vector<input::PhotoFile>& photos, survey::ColmapDatabase& database) {
+  std::map<std::string, double> focal_of_name;
+  for (const input::PhotoFile& photo : photos) {
+    if (photo.rig && photo.rig->exact_focal_px) focal_of_name.emplace(photo.name, *photo.rig->exact_focal_px);
+  }
+  std::map<uint32_t, double> focal_of_camera;
+  for (const survey::DatabaseImage& image : database.ReadImages()) {
+    if (const auto focal = focal_of_name.find(image.name); focal != focal_of_name.end()) focal_of_camera.emplace(image.camera_id, focal->second);
+  }
+  for (const auto& [id, focal_px] : focal_of_camera) database.SetFocal(id, focal_px, true);
+}
+
+// Names of photos that are such views.
+std::set<std::string> ExactNames(const std::vector<input::PhotoFile>& photos) {
+  std::set<std::string> names;
+  for (const input::PhotoFile& photo : photos) {
+    if (photo.rig && photo.rig->exact_focal_px) names.insert(photo.name);
+  }
+  return names;
 }
 
 std::vector<std::string> ExtractorArguments(const PoseOptions& options) {
@@ -80,6 +104,7 @@ std::string FeatureInputs(const ColmapJob& job, const ColmapSettings& settings, 
     add_file(job.photo_root / photo.name);
     const fs::path mask = job.masks / (photo.name + ".png");
     if (!job.masks.empty() && fs::exists(mask)) add_file(mask);
+    if (photo.rig) text += LensOfRig(*photo.rig) + "\n";
   }
   const FastColmapFlags flags;
   if (settings.fast) text += fmt::format("fast {} {} {}\n", flags.first_octave, flags.max_features, FewFeatures(options));
@@ -103,14 +128,16 @@ void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const
   const std::vector<std::string> thorough = {"--SiftExtraction.max_num_features", std::to_string(options.max_features)};
   const std::vector<std::string> fast = {"--SiftExtraction.max_num_features", std::to_string(std::min(options.max_features, flags.max_features)),
                                          "--SiftExtraction.first_octave", std::to_string(flags.first_octave)};
+  const std::set<std::string> exact_names = ExactNames(photos);
   std::vector<PoseTask> missing;
   size_t n_missing = 0;
   for (const survey::DatabasePart& part : parts) {
     if (fs::exists(part.file)) continue;
+    const bool exact = exact_names.contains(part.names.front());
     missing.emplace_back(FeatureTask{.job = job,
                                      .program = settings.program,
                                      .arguments = ExtractorArguments(options),
-                                     .camera_model = options.camera_model,
+                                     .camera_model = exact ? "PINHOLE" : options.camera_model,
                                      .search = settings.fast ? fast : thorough,
                                      .few_features = settings.fast ? FewFeatures(options) : 0,
                                      .search_again = thorough,
@@ -132,6 +159,7 @@ void ExtractFeatures(const ColmapJob& job, const ColmapSettings& settings, const
   survey::MergeFeatures(parts, job.Database());
   survey::ColmapDatabase database(job.Database());
   CorrectFocals(photos, database);
+  SetExactLenses(photos, database);
 }
 
 void RemoveFeatureParts(const ColmapJob& job) {

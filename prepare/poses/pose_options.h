@@ -40,11 +40,13 @@ struct PairRules {
   size_t position_neighbors = 4;  // nearest by position of the camera, where gimbal angles move what is looked at: the tags may be wrong
   size_t similar = 24;            // most similar photos, for photos without a usable position
   size_t name_neighbors = 2;      // photos before and after in name order, for the same
+  size_t shot_neighbors = 6;      // nearest shots of rigs, all of whose photos that look the same way are matched
   size_t links = 4;               // pairs that connect groups which have none in common
 };
 
 // After the fast way has found too few poses.
-constexpr PairRules kMorePairs{.all_below = 60, .neighbors = 24, .position_neighbors = 8, .similar = 48, .name_neighbors = 4, .links = 8};
+constexpr PairRules kMorePairs{
+    .all_below = 60, .neighbors = 24, .position_neighbors = 8, .similar = 48, .name_neighbors = 4, .shot_neighbors = 10, .links = 8};
 
 // The fast way's result is accepted when it has at least this share of the photos.
 constexpr double kEnoughRegistered = 0.9;

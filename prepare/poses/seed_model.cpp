@@ -13,6 +13,7 @@
 #include "prepare/poses/seed/focal_by_height.h"
 #include "prepare/poses/seed/point_colors.h"
 #include "prepare/poses/seed/seed_poses.h"
+#include "prepare/poses/shot_poses.h"
 
 namespace skyquilt::prepare::poses {
 namespace {
@@ -128,6 +129,7 @@ std::string SeedInputs(const std::vector<input::PhotoFile>& photos) {
     const survey::PhotoTags& tags = photo.tags;
     const input::TagAccuracy accuracy = input::AccuracyOf(tags);
     text += tags.gps ? fmt::format("{:.9g}", tags.gps->height_m) : "-";
+    text += RigInputs(photo);
     text += fmt::format(" {:.9g} {:.9g} {}\n", accuracy.horizontal_m, accuracy.vertical_m, TagText(tags.gimbal_roll_deg));
   }
   return text;
@@ -140,6 +142,7 @@ std::optional<SeedInput> ReadSeedInput(const fs::path& file, const std::vector<i
   const std::map<uint32_t, camera::Camera> cameras = database.ReadCameras();
   SeedInput input;
   std::unordered_map<uint32_t, size_t> n_features;
+  ShotNumbers shots;
   for (const input::PhotoFile& photo : photos) {
     const auto image = image_of_name.find(photo.name);
     if (image == image_of_name.end()) continue;  // COLMAP could not read it
@@ -150,6 +153,11 @@ std::optional<SeedInput> ReadSeedInput(const fs::path& file, const std::vector<i
     }
     input.cameras.try_emplace(camera->first, SeedLens{camera->second, !IsGuessedFocal(camera->second)});
     input.photos.push_back(SeedPhotoOf(image->second, photo.tags, database.ReadKeypoints(image->second.id)));
+    if (photo.rig) {
+      input.photos.back().shot = shots.Of(*photo.rig);
+      input.photos.back().cam_from_rig = photo.rig->cam_from_rig;
+      input.cameras.at(camera->first).exact = photo.rig->exact_focal_px.has_value();
+    }
     n_features.emplace(image->second.id, input.photos.back().features.size());
   }
   for (survey::DatabaseMatches& matches : database.ReadTwoViewMatches()) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -40,6 +41,38 @@ TEST(Holdout, CountsRegisteredPhotosInNameOrder) {
   EXPECT_EQ(TestIndices("every:5:3", 10), (std::vector<int>{3, 8}));
   EXPECT_EQ(TestIndices("none", 4), (std::vector<int>{}));
   EXPECT_EQ(TestIndices("every:8", 0), (std::vector<int>{}));
+}
+
+// Three shots of two views each and one photo alone.
+std::vector<std::string> HeldOutOfShots(const std::string& holdout) {
+  survey::Survey survey;
+  std::map<std::string, std::string> shots;
+  for (const std::string view : {"view0/", "view1/"}) {
+    for (const std::string shot : {"a.jpg", "b.jpg", "c.jpg"}) {
+      survey.photos.emplace_back().name = view + shot;
+      shots.emplace(view + shot, shot);
+    }
+  }
+  survey.photos.emplace_back().name = "z.jpg";
+  MarkHoldout(ParseHoldout(holdout), shots, survey);
+  std::vector<std::string> names;
+  for (const survey::Photo& photo : survey.photos) {
+    if (photo.is_test) names.push_back(photo.name);
+  }
+  return names;
+}
+
+TEST(Holdout, PhotosOfOneShotAreHeldOutTogether) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(HeldOutOfShots("every:3"), (Names{"view0/a.jpg", "view1/a.jpg", "z.jpg"}));
+  EXPECT_EQ(HeldOutOfShots("every:4:1"), (Names{"view0/b.jpg", "view1/b.jpg"}));
+  EXPECT_EQ(HeldOutOfShots("none"), Names{});
+  const TemporaryFolder folder;
+  // By the shot, or by one of its photos.
+  base::WriteFileAtomically(folder / "list.txt", "b.jpg\nview1/c.jpg\n");
+  EXPECT_EQ(HeldOutOfShots("list:" + (folder / "list.txt").string()), (Names{"view0/b.jpg", "view0/c.jpg", "view1/b.jpg", "view1/c.jpg"}));
+  base::WriteFileAtomically(folder / "list.txt", "a.jpg\nb.jpg\nc.jpg\nz.jpg\n");
+  EXPECT_THROW(HeldOutOfShots("list:" + (folder / "list.txt").string()), base::UsageError);
 }
 
 TEST(Holdout, NonsenseIsAUsageError) {

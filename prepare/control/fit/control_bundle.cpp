@@ -47,6 +47,7 @@ class BundleBuilder {
     for (const auto& [id, camera] : job_.model.cameras) {
       lens_of_camera_.emplace(id, static_cast<int>(result_.bundle.lenses.size()));
       result_.bundle.lenses.push_back(LensFor(camera, &result_.known_lenses));
+      result_.bundle.lenses.back().exact = job_.model.exact_cameras.contains(id);
     }
     for (const survey::ColmapImage& image : job_.model.images) {
       bundle::BundlePhoto photo;
@@ -54,6 +55,8 @@ class BundleBuilder {
       photo.centre = image.cam_from_world.OriginInSource();
       photo.placed = true;
       photo.lens = lens_of_camera_.at(image.camera_id);
+      photo.shot = image.shot;
+      photo.cam_from_rig = image.cam_from_rig;
       result_.bundle.photos.push_back(photo);
     }
     AddTies();
@@ -163,6 +166,7 @@ void ControlBundle::Move(const geo::Similarity3d& b_from_a) {
   for (bundle::BundlePhoto& photo : bundle.photos) {
     photo.centre = b_from_a * photo.centre;
     photo.cam_from_enu = (photo.cam_from_enu * b_from_a.rotation.conjugate()).normalized();
+    photo.cam_from_rig.translation *= b_from_a.scale;
   }
   for (Eigen::Vector3d& point : bundle.point) point = b_from_a * point;
 }

@@ -37,6 +37,7 @@ void UpdateModel(const ControlBundle& marked, const geo::Similarity3d& enu_from_
   for (uint32_t i = 0; i < model.images.size(); ++i) {
     const bundle::BundlePhoto& photo = bundle.photos[i];
     model.images[i].cam_from_world = {photo.cam_from_enu, -(photo.cam_from_enu * photo.centre)};
+    model.images[i].cam_from_rig = photo.cam_from_rig;
     photo_of_image.emplace(model.images[i].id, i);
   }
   for (survey::ColmapPoint& point : model.points) {

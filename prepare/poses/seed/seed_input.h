@@ -11,6 +11,7 @@
 
 #include "core/camera/camera.h"
 #include "core/geo/geodetic.h"
+#include "core/geo/transform.h"
 
 namespace skyquilt::prepare::poses {
 
@@ -23,6 +24,8 @@ struct SeedPhoto {
   double vertical_sigma_m = 4.5;                       // likewise
   std::optional<double> yaw_deg, pitch_deg, roll_deg;  // of the gimbal: clockwise from north; -90 looks straight down; right side down
   std::optional<double> relative_altitude_m = {};      // tagged height above take-off
+  int shot = -1;                                       // of the rig's cameras at once (prepare/bundle/shots.h); negative: alone
+  geo::Rigid3d cam_from_rig = {};                      // metres
   std::vector<Eigen::Vector2f> features;               // pixels of the stored photo (core/camera/camera.h)
 };
 
@@ -30,6 +33,7 @@ struct SeedLens {
   camera::Camera camera;       // to begin with
   bool focal_is_known = true;  // from the photo's tags; false: a guess from the width of the photo
   double focal_sigma = 0.05;   // of a known focal length, relative, one standard deviation
+  bool exact = false;          // nothing of it is adjusted
 };
 
 // Features `first` of image a and `second` of image b that agree with one geometry of the two views.

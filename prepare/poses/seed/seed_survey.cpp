@@ -132,6 +132,7 @@ bool MakeSeedSurvey(const SeedInput& input, SeedSurvey* survey, std::string* rea
     lens_of.emplace(id, static_cast<int>(survey->lenses.size()));
     survey->lenses.push_back({*numbers, *numbers, seed.camera, seed.focal_is_known ? seed.focal_sigma : kGuessedFocalSigma,
                               std::max(seed.camera.width, seed.camera.height) / bundle::kUnitWidth_px});
+    survey->lenses.back().exact = seed.exact;
   }
   std::map<uint32_t, uint32_t> index;
   survey->photos.resize(n);
@@ -142,6 +143,8 @@ bool MakeSeedSurvey(const SeedInput& input, SeedSurvey* survey, std::string* rea
     const auto lens = lens_of.find(photo.camera_id);
     SKYQUILT_CHECK(lens != lens_of.end(), "no camera " + std::to_string(photo.camera_id));
     survey->photos[i].lens = lens->second;
+    survey->photos[i].shot = photo.shot;
+    survey->photos[i].cam_from_rig = photo.cam_from_rig;
   }
   SetPlaces(input, tags, &survey->photos);
   for (const PairMatches& matches : input.pairs) {

@@ -78,6 +78,7 @@ const std::map<std::string, InnerRoom>& InnerRooms() {
             {"control", {"input", "models", "tables", "bundle"}},
             {"georeference", {"control", "poses", "input", "models", "tables", "bundle"}},
             {"video", {"input", "tables"}},
+            {"rigs", {"input", "tables", "poses"}},
         },
         {}}},
       {"evaluate",

@@ -51,6 +51,37 @@ void SetExifPosition(Exiv2::ExifData& exif) {
   exif["Exif.GPSInfo.GPSLongitudeRef"] = "W";
 }
 
+TEST(Exif, PanoramasSayWhatTheyShow) {
+  PhotoTags tags;
+  EXPECT_FALSE(RoundTrip(tags).panorama);
+  tags.panorama = PanoramaTags{
+      .heading_deg = 271.25, .pitch_deg = -3.5, .roll_deg = 0.0, .full_width = 8192, .full_height = 4096, .left = 12, .top = 100, .area_width = 8000};
+  const PhotoTags read = RoundTrip(tags);
+  ASSERT_TRUE(read.panorama);
+  EXPECT_EQ(read.panorama->heading_deg, 271.25);
+  EXPECT_EQ(read.panorama->pitch_deg, -3.5);
+  EXPECT_EQ(read.panorama->roll_deg, 0.0);
+  EXPECT_EQ(read.panorama->full_width, 8192);
+  EXPECT_EQ(read.panorama->full_height, 4096);
+  EXPECT_EQ(read.panorama->left, 12);
+  EXPECT_EQ(read.panorama->top, 100);
+  EXPECT_EQ(read.panorama->area_width, 8000);
+}
+
+TEST(Exif, OtherProjectionsAndWildSizesAreNoPanorama) {
+  EXPECT_FALSE(ReadForged([](auto&, auto& xmp) { xmp["Xmp.GPano.ProjectionType"] = "cylindrical"; }).panorama);
+  const PhotoTags wild = ReadForged([](auto&, auto& xmp) {
+    xmp["Xmp.GPano.ProjectionType"] = "equirectangular";
+    xmp["Xmp.GPano.FullPanoWidthPixels"] = "1e300";
+    xmp["Xmp.GPano.FullPanoHeightPixels"] = "-5";
+    xmp["Xmp.GPano.PoseHeadingDegrees"] = "north";
+  });
+  ASSERT_TRUE(wild.panorama);
+  EXPECT_EQ(wild.panorama->full_width, 0);
+  EXPECT_EQ(wild.panorama->full_height, 0);
+  EXPECT_FALSE(wild.panorama->heading_deg);
+}
+
 TEST(Exif, PositionsSurviveTheRoundTripEverywhereOnEarth) {
   const geo::Geodetic positions[] = {
       {90.0, 0.0, 2835.0},        {-90.0, 12.0, 2835.0},  {0.0, -180.0, 10.0},          {12.5, 179.999999999, 10.0}, {-33.8567844, 151.2152967, 5},

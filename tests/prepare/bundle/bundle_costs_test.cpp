@@ -82,6 +82,30 @@ TEST(BundleCosts, ReprojectionHasTheDerivativesOfItsValue) {
   }
 }
 
+TEST(BundleCosts, ReprojectionByACameraOfARigHasTheDerivativesOfItsValue) {
+  base::Random random(4);
+  for (int k = 0; k < 20; ++k) {
+    const Lens lens = {1200.0, 1.01, 800.0, 600.0, random.Uniform(-0.1, 0.1), random.Uniform(-0.05, 0.05), 1e-3, -2e-3};
+    const std::vector<double> point = {random.Uniform(-20.0, 20.0), random.Uniform(-20.0, 20.0), random.Uniform(-5.0, 5.0)};
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(random.Uniform(-0.4, 0.4), Eigen::Vector3d(1.0, 2.0, -1.0).normalized()));
+    const geo::Rigid3d cam_from_rig{turn, {0.3, -0.2, 0.5}};
+    ExpectDerivatives(RigReprojectionCost(cam_from_rig, {700.0, 500.0}, 2.0), {Numbers(RandomPose(random)), Numbers(lens), point});
+  }
+}
+
+TEST(BundleCosts, ACameraInTheFrameOfItsRigIsLikeOneAlone) {
+  base::Random random(6);
+  const Lens lens = {1200.0, 1.0, 800.0, 600.0, 0.05, 0.01, 1e-3, 0.0};
+  const PoseNumbers pose = RandomPose(random);
+  const std::vector<double> point = {1.0, 2.0, 3.0};
+  const double* blocks[] = {pose.data(), lens.data(), point.data()};
+  double alone[2], on_rig[2];
+  ASSERT_TRUE(ReprojectionCost({700.0, 500.0}, 2.0).Evaluate(blocks, alone, nullptr));
+  ASSERT_TRUE(RigReprojectionCost({}, {700.0, 500.0}, 2.0).Evaluate(blocks, on_rig, nullptr));
+  EXPECT_NEAR(on_rig[0], alone[0], 1e-12);
+  EXPECT_NEAR(on_rig[1], alone[1], 1e-12);
+}
+
 TEST(BundleCosts, TagsHaveTheDerivativesOfTheirValue) {
   base::Random random(2);
   for (int k = 0; k < 20; ++k) {

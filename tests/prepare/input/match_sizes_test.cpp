@@ -112,7 +112,7 @@ TEST_F(ScaleToPhotosTest, ModelsWithoutObservationsKeepTheirFolder) {
   EXPECT_EQ(made.model.cameras.at(1).width, 2000);
   // Tracks whose observations are missing are left out.
   SizedModel bare;
-  survey::WriteColmapText({bare.model.cameras, bare.model.images, {}}, folder_ / "bare");
+  survey::WriteColmapText({bare.model.cameras, bare.model.images, {}, {}}, folder_ / "bare");
   for (size_t i = 0; i < 3; ++i) bare.SetSize(i, 2000, 1500);
   const fs::path scaled = ScaleToPhotos(FindPhotos(bare.model, bare.photos), bare.photos, folder_ / "bare", true, folder_ / "scaled", bare.model);
   EXPECT_TRUE(survey::ReadColmapModel(scaled).points.front().image_ids.empty());

@@ -150,7 +150,8 @@ void AddPanoramaFlags(CLI::App& command, const Overrides& overrides) {
       [overrides] {
         overrides->push_back({"prepare.panoramas", "all"});
       },
-      "take every photo that is twice as wide as high for a panorama of all directions, and not only those whose tags say so [prepare.panoramas]");
+      "take every photo that is twice as wide as high for a panorama of all directions, and not only those whose tags say so [prepare.panoramas = "
+      "all]");
   command
       .add_option_function<std::string>(
           "--rig",

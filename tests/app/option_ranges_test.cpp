@@ -80,7 +80,8 @@ TEST(OptionRanges, OnlyTextsAndSwitchesHaveNone) {
       "prepare.geo_file",     "prepare.gcp",          "prepare.gcp_marks",  "prepare.gcp_crs",        "prepare.gcp_columns",
       "prepare.check_points", "prepare.up",           "prepare.scale_bars", "partition.blocks",       "brightness.correction",
       "products.exposure",    "products.boundary",    "products.kinds",     "evaluate.lpips_network", "evaluate.normal_photos",
-      "buildings.footprints", "simulate.control_crs", "masks.segment",      "masks.segment_config",   "masks.ignore_ground"};
+      "buildings.footprints", "simulate.control_crs", "masks.segment",      "masks.segment_config",   "masks.ignore_ground",
+      "prepare.rig"};
   for (const Described& one : AllOptions(settings)) {
     if (std::holds_alternative<bool*>(one.option.value) || free_texts.contains(one.key)) continue;
     EXPECT_NE(one.option.range.Text(), "") << one.key;

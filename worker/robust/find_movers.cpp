@@ -20,11 +20,11 @@ constexpr double kMajority = 2.0 / 3.0;
 constexpr double kLeastAxisCosine = 0.5;  // between the directions of photos that are compared
 constexpr float kStrong = 0.10F;          // difference of display values, far beyond that of exposures and of a surface's gloss
 constexpr float kWeak = 0.05F;
-constexpr float kAgree = 0.2F;  // largest difference of others from their median colour
+constexpr float kAgree = 0.25F;  // largest difference of others from their median colour
 // Other distances that are tried, as parts of that of the surface: in front of it, and a little behind.
 constexpr double kNearest = 0.7, kFarthest = 1.1;
 constexpr int kDistances = 17;
-constexpr double kExplains = 0.6;  // share of the photos that agree at such a distance
+constexpr double kExplains = 0.65;  // share of the photos that agree at such a distance
 constexpr size_t kFewestCells = 3;
 constexpr int kSmoothCells = 5;       // side of the squares in which smooth differences are measured
 constexpr double kMostMovers = 0.03;  // share of a photo

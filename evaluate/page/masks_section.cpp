@@ -70,12 +70,11 @@ std::optional<Table> ReadTable(std::optional<Table> (*load)(const std::filesyste
 
 std::string PicturesHtml(const std::vector<MaskPicture>& pictures) {
   if (pictures.empty()) return "";
-  std::string html = "<div class=\"views\">";
+  std::string html = "<article class=\"card photo\"><div class=\"pics three\">";
   for (const MaskPicture& one : pictures) {
-    html += "<article class=\"card photo\"><header><h3>" + EscapeHtml(one.photo) + "</h3></header>" +
-            Picture("mask-pic", one.image, one.width_px, one.height_px, FormatPercent(one.ignored, 2) + " ignored") + "</article>\n";
+    html += Picture("mask-pic", one.image, one.width_px, one.height_px, one.photo + ": " + FormatPercent(one.ignored, 2) + " ignored");
   }
-  return html + "</div>";
+  return html + "</div></article>\n";
 }
 
 std::string MasksBlock(const MasksReport& report) {

@@ -28,13 +28,17 @@ DepthViews DepthViews::Open(const std::filesystem::path& file) {
     std::memcpy(&record, records.data() + i * sizeof(record), sizeof(record));
     const std::optional<ViewPose> pose = PoseOf(record);
     if (!pose) fail("has an impossible camera for view " + std::to_string(i));
-    if (PictureBytes(*pose) > bytes.size() - offset) fail("is cut off in view " + std::to_string(i));
+    const size_t picture = PictureBytes(*pose);
+    if (picture + kPictureHashBytes > bytes.size() - offset) fail("is cut off in view " + std::to_string(i));
+    const auto text = [&](size_t from, size_t size) { return std::string_view(reinterpret_cast<const char*>(bytes.data()) + from, size); };
+    if (base::HashHex(text(offset, picture)) != text(offset + picture, kPictureHashBytes)) fail("is damaged in view " + std::to_string(i));
     views.poses_.push_back(*pose);
     views.offset_.push_back(offset);
-    offset += PictureBytes(*pose);
+    offset += picture + kPictureHashBytes;
   }
   if (offset != bytes.size()) fail("has " + std::to_string(bytes.size() - offset) + " bytes too many");
   views.key_.assign(header.key.data(), header.key.size());
+  views.ReleasePages();  // all were read for their checksums
   return views;
 }
 

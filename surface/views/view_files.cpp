@@ -99,9 +99,11 @@ void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const
     const std::filesystem::path part = folder / ViewFileName(i);
     const std::optional<RenderedView> view = LoadView(part, poses[i], key);
     if (!view) throw base::InputError(part, "is missing or damaged", "Run the command again; it renders this view again");
-    joined.Append(BytesOf(view->depth_m));
-    joined.Append(BytesOf(view->cosine));
-    joined.Append(std::string(PictureBytes(poses[i]) - PixelsOf(poses[i]) * (sizeof(float) + 1), '\0'));
+    std::string picture(BytesOf(view->depth_m));
+    picture += BytesOf(view->cosine);
+    picture.resize(PictureBytes(poses[i]), '\0');
+    joined.Append(picture);
+    joined.Append(base::HashHex(picture));
     progress.Update(static_cast<double>(i + 1));
   }
   joined.Complete();

@@ -48,9 +48,10 @@ inline std::optional<ViewPose> PoseOf(const ViewRecord& record) {
   return pose;
 }
 
-// views.bin: this header, the records of all views, and the pictures: depths (float), then cosines (bytes), padded with zeros to 8 bytes.
+// views.bin: this header, the records of all views, and the pictures: depths (float), then cosines (bytes), padded with zeros to 8 bytes, then
+// base::HashHex of all these bytes.
 struct ViewsHeader {
-  std::array<char, 8> magic = {'S', 'Q', 'V', 'I', 'E', 'W', 'S', '1'};
+  std::array<char, 8> magic = {'S', 'Q', 'V', 'I', 'E', 'W', 'S', '2'};
   std::array<char, 16> key = {};       // of what they were rendered from
   std::array<char, 16> checksum = {};  // base::HashHex of the records
   uint64_t views = 0;
@@ -64,5 +65,6 @@ inline size_t PictureBytes(const ViewPose& pose) {
   constexpr size_t kAlign = 8;
   return (PixelsOf(pose) * (sizeof(float) + 1) + kAlign - 1) / kAlign * kAlign;
 }
+constexpr size_t kPictureHashBytes = 16;
 
 }  // namespace skyquilt::surface

@@ -70,11 +70,11 @@ std::optional<Table> ReadTable(std::optional<Table> (*load)(const std::filesyste
 
 std::string PicturesHtml(const std::vector<MaskPicture>& pictures) {
   if (pictures.empty()) return "";
-  std::string html = "<article class=\"card photo\"><div class=\"pics three\">";
+  std::string html = "<div class=\"views\"><article class=\"card photo\"><div class=\"pics three\">";
   for (const MaskPicture& one : pictures) {
     html += Picture("mask-pic", one.image, one.width_px, one.height_px, one.photo + ": " + FormatPercent(one.ignored, 2) + " ignored");
   }
-  return html + "</div></article>\n";
+  return html + "</div></article></div>\n";
 }
 
 std::string MasksBlock(const MasksReport& report) {

@@ -18,7 +18,7 @@ struct RigPlace {
   std::string shot;           // the same for all photos that were taken at once
   std::string camera;         // the same for all photos of one of the rig's cameras
   geo::Rigid3d cam_from_rig;  // metres
-  // The photo is a view that was computed: without distortion, with this focal length in pixels and its principal point in the middle.
+  // The photo has no distortion, this focal length in pixels and its principal point in the middle, as views have that were computed.
   std::optional<double> exact_focal_px = {};
 };
 

@@ -84,9 +84,9 @@ std::vector<double> AnglesToRigs(const bundle::BundleProblem& bundle) {
 void CheckRig(const std::vector<double>& angles_deg, const std::vector<input::PhotoFile>& photos) {
   const auto n_off = std::count_if(angles_deg.begin(), angles_deg.end(), [](double angle) { return angle > bundle::kShotAngle_deg; });
   if (2 * static_cast<size_t>(n_off) <= angles_deg.size()) return;
-  const auto user = std::find_if(photos.begin(), photos.end(), [](const auto& photo) { return photo.rig && !photo.rig->exact_focal_px; });
-  if (user == photos.end()) return;
-  throw base::InputError(user->rig->rig,
+  const auto user = std::find_if(photos.begin(), photos.end(), [](const auto& photo) { return photo.rig.has_value(); });
+  // The poses may be wrong as well: of more pairs they may be others.
+  throw NoModelError(user->rig->rig,
                          fmt::format("contradicts the photos: {} of {} poses that were found are more than {:g} degrees off the rig's", n_off,
                                      angles_deg.size(), bundle::kShotAngle_deg),
                          "Rotations there are cam_from_rig, as w, x, y, z. Correct them, or set prepare.rig = none to find every photo by itself");

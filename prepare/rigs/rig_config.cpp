@@ -32,6 +32,30 @@ geo::Rigid3d PlaceOf(const base::JsonValue& camera) {
   return {rotation.normalized(), {xyz[0], xyz[1], xyz[2]}};
 }
 
+// COLMAP's name of the model and its parameters, of models without distortion; others say less than what is found from the photos.
+void ReadLens(const base::JsonValue& json, RigCamera& camera) {
+  const std::optional<base::JsonValue> model = json.Find("camera_model_name");
+  if (!model) return;
+  const std::string name = model->Text();
+  if (name != "PINHOLE" && name != "SIMPLE_PINHOLE") return;
+  const std::optional<base::JsonValue> params = json.Find("camera_params");
+  if (!params) return;
+  camera.model = name;
+  camera.params = params->Numbers(name == "PINHOLE" ? 4 : 3);
+  if (!(camera.params.front() > 0.0)) params->Fail("must begin with a focal length in pixels");
+}
+
+// In pixels, of photos for which this is their whole lens.
+std::optional<double> ExactFocal(const RigCamera& camera, const input::PhotoFile& photo) {
+  if (camera.params.empty()) return std::nullopt;
+  constexpr double kMostOff = 1e-3;  // share of the focal length
+  const std::vector<double>& params = camera.params;
+  const double focal = params.front(), centre_x = params[params.size() - 2], centre_y = params.back();
+  const bool square = std::abs(params[params.size() - 3] - focal) <= kMostOff * focal;
+  const bool middle = std::abs(2.0 * centre_x - photo.width) <= 1.0 && std::abs(2.0 * centre_y - photo.height) <= 1.0;
+  return square && middle ? std::optional(focal) : std::nullopt;
+}
+
 Rig ReadRig(const base::JsonValue& json, std::set<std::string>* prefixes) {
   Rig rig;
   bool has_reference = false;
@@ -45,6 +69,7 @@ Rig ReadRig(const base::JsonValue& json, std::set<std::string>* prefixes) {
     if (is_reference && has_reference) one.At("ref_sensor").Fail("is true for a second camera of the rig");
     has_reference = has_reference || is_reference;
     if (!is_reference) camera.cam_from_rig = PlaceOf(one);
+    ReadLens(one, camera);
     rig.cameras.insert(is_reference ? rig.cameras.begin() : rig.cameras.end(), std::move(camera));
   }
   if (!has_reference) json.Fail("has no camera with ref_sensor = true");
@@ -121,7 +146,7 @@ fs::path FindRigConfig(const fs::path& photo_root, const std::string& option) {
 
 void UseRigs(const std::vector<Rig>& rigs, const fs::path& file, std::vector<input::PhotoFile>& photos) {
   std::map<std::string, size_t> n_of_shot;
-  size_t n_placed = 0, n_alone = 0;
+  size_t n_placed = 0, n_alone = 0, n_exact = 0;
   for (input::PhotoFile& photo : photos) {
     const std::optional<Place> place = PlaceOfName(rigs, photo.name);
     if (!place) {
@@ -130,7 +155,12 @@ void UseRigs(const std::vector<Rig>& rigs, const fs::path& file, std::vector<inp
     }
     const RigCamera& camera = rigs[place->rig].cameras[place->camera];
     const std::string shot = rigs.size() > 1 ? fmt::format("rig {}: {}", place->rig + 1, place->rest) : place->rest;
-    photo.rig = input::RigPlace{.rig = file.string(), .shot = shot, .camera = camera.prefix, .cam_from_rig = camera.cam_from_rig};
+    photo.rig = input::RigPlace{.rig = file.string(),
+                                .shot = shot,
+                                .camera = camera.prefix,
+                                .cam_from_rig = camera.cam_from_rig,
+                                .exact_focal_px = ExactFocal(camera, photo)};
+    if (photo.rig->exact_focal_px) ++n_exact;
     ++n_of_shot[shot];
     ++n_placed;
   }
@@ -143,8 +173,9 @@ void UseRigs(const std::vector<Rig>& rigs, const fs::path& file, std::vector<inp
                            "Photos of one shot need the same name behind image_prefix (front/0001.jpg and back/0001.jpg), relative to the photo "
                            "folder; or set prepare.rig = none");
   }
-  base::LogInfo("{}: {} photos are of {} shots of a rig{}", file.string(), n_placed, n_of_shot.size(),
-                n_alone > 0 ? fmt::format(", {} have none of its prefixes and stand alone", n_alone) : "");
+  base::LogInfo("{}: {} photos are of {} shots of a rig{}{}", file.string(), n_placed, n_of_shot.size(),
+                n_alone > 0 ? fmt::format(", {} have none of its prefixes and stand alone", n_alone) : "",
+                n_exact > 0 ? fmt::format("; the lenses of {} are kept, because it says that they have no distortion", n_exact) : "");
 }
 
 }  // namespace skyquilt::prepare::rigs

@@ -3,7 +3,8 @@
 //   image_prefix               photos of this camera: their names begin so; what follows is the same for all photos of one shot
 //   ref_sensor                 true for the one whose frame is the rig's
 //   cam_from_rig_rotation      w, x, y, z; cam_from_rig_translation: metres. Of the others
-//   camera_model_name, camera_params   its lens; written, and not used when read: lenses are found
+//   camera_model_name, camera_params   its lens. Pictures without distortion (PINHOLE, SIMPLE_PINHOLE) with the principal point in their middle keep
+//                              it; other lenses are found from the photos
 #pragma once
 
 #include <filesystem>
@@ -18,7 +19,7 @@ namespace skyquilt::prepare::rigs {
 struct RigCamera {
   std::string prefix;
   geo::Rigid3d cam_from_rig;
-  std::string model = {};  // COLMAP's name; empty: not written
+  std::string model = {};  // COLMAP's name; empty: not known
   std::vector<double> params = {};
 };
 
@@ -27,7 +28,8 @@ struct Rig {
 };
 
 // Throws base::InputError that names the file, the line and what is wrong: no such file or not this form, not exactly one reference in a rig, a
-// camera without its place, a rotation that is none, a prefix twice.
+// camera without its place, a rotation that is none, a prefix twice, a lens without distortion whose
+// parameters are not those of its model.
 std::vector<Rig> ReadRigConfig(const std::filesystem::path& file);
 std::string RigConfigText(const std::vector<Rig>& rigs);
 

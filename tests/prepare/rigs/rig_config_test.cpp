@@ -83,6 +83,9 @@ TEST_F(RigFile, FaultsNameTheFileTheLineAndTheFix) {
       {"[{\"cameras\": [" + camera +
            ", {\"image_prefix\": \"b/\", \"cam_from_rig_rotation\": [NaN, 0, 0, 0], \"cam_from_rig_translation\": [0, 0, 0]}]}]",
        "cam_from_rig_rotation"},
+      {R"([{"cameras": [{"image_prefix": "a/", "ref_sensor": true, "camera_model_name": "PINHOLE", "camera_params": [500, 320, 240]}]}])", "4"},
+      {R"([{"cameras": [{"image_prefix": "a/", "ref_sensor": true, "camera_model_name": "SIMPLE_PINHOLE", "camera_params": [0, 320, 240]}]}])",
+       "focal length"},
   };
   for (const auto& [text, says] : cases) {
     const std::string problem = Problem(text);
@@ -102,7 +105,26 @@ TEST_F(RigFile, PhotosOfOneNameBehindThePrefixesAreOneShot) {
   EXPECT_NE(photos[0].rig->camera, photos[3].rig->camera);
   EXPECT_EQ(photos[0].rig->cam_from_rig.translation, Eigen::Vector3d(-0.1, 0.02, 0.3));
   EXPECT_FALSE(photos[2].rig);
-  EXPECT_FALSE(photos[0].rig->exact_focal_px);
+  EXPECT_EQ(photos[0].rig->exact_focal_px, 500.0);
+  EXPECT_FALSE(photos[3].rig->exact_focal_px);
+}
+
+TEST_F(RigFile, OnlyALensWithoutDistortionInTheMiddleOfThePhotoIsKept) {
+  const auto focal_with = [&](const std::string& lens) {
+    const std::vector<Rig> rigs = ReadRigConfig(Write(R"([{"cameras": [{"image_prefix": "a/", "ref_sensor": true, )" + lens +
+                                                      R"(}, {"image_prefix": "b/", "cam_from_rig_rotation": [1, 0, 0, 0],
+                                                      "cam_from_rig_translation": [0, 0, 0]}]}])"));
+    std::vector<input::PhotoFile> photos = PhotosNamed({"a/1.jpg", "b/1.jpg"});
+    UseRigs(rigs, folder_ / "rig_config.json", photos);
+    EXPECT_FALSE(photos[1].rig->exact_focal_px);
+    return photos[0].rig->exact_focal_px;
+  };
+  EXPECT_EQ(focal_with(R"("camera_model_name": "PINHOLE", "camera_params": [500, 500, 320, 240])"), 500.0);
+  EXPECT_EQ(focal_with(R"("camera_model_name": "SIMPLE_PINHOLE", "camera_params": [500, 320.5, 239.5])"), 500.0);
+  EXPECT_FALSE(focal_with(R"("camera_model_name": "PINHOLE", "camera_params": [500, 510, 320, 240])"));
+  EXPECT_FALSE(focal_with(R"("camera_model_name": "PINHOLE", "camera_params": [500, 500, 300, 240])"));
+  EXPECT_FALSE(focal_with(R"("camera_model_name": "OPENCV", "camera_params": [500, 500, 320, 240, 0.1, 0, 0, 0])"));
+  EXPECT_FALSE(focal_with(R"("camera_model_name": "PINHOLE")"));
 }
 
 TEST_F(RigFile, NamesThatMakeNoShotAreAnError) {

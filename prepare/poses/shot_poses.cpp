@@ -87,9 +87,9 @@ void CheckRig(const std::vector<double>& angles_deg, const std::vector<input::Ph
   const auto user = std::find_if(photos.begin(), photos.end(), [](const auto& photo) { return photo.rig.has_value(); });
   // The poses may be wrong as well: of more pairs they may be others.
   throw NoModelError(user->rig->rig,
-                         fmt::format("contradicts the photos: {} of {} poses that were found are more than {:g} degrees off the rig's", n_off,
-                                     angles_deg.size(), bundle::kShotAngle_deg),
-                         "Rotations there are cam_from_rig, as w, x, y, z. Correct them, or set prepare.rig = none to find every photo by itself");
+                     fmt::format("contradicts the photos: {} of {} poses that were found are more than {:g} degrees off the rig's", n_off,
+                                 angles_deg.size(), bundle::kShotAngle_deg),
+                     "Rotations there are cam_from_rig, as w, x, y, z. Correct them, or set prepare.rig = none to find every photo by itself");
 }
 
 void Scale(double factor, bundle::BundleProblem& bundle) {

@@ -47,6 +47,7 @@
 #include "prepare/models/read_model.h"
 #include "prepare/poses/colmap_run.h"
 #include "prepare/poses/focal_check.h"
+#include "prepare/poses/join_parts.h"
 #include "prepare/poses/shot_poses.h"
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
@@ -255,6 +256,21 @@ void LogDirections(const survey::DominantDirections& directions) {
                 text.empty() ? "none" : text);
 }
 
+// Parts of the survey stand beside each other as their tags say.
+void NoteParts(const survey::ColmapModel& model, survey::Survey& survey) {
+  const std::vector<std::vector<std::string>> parts = poses::PartsOf(model);
+  if (parts.size() < 2) return;
+  std::string names;
+  for (const std::vector<std::string>& part : parts) {
+    names += fmt::format("{}{} photos such as {}", names.empty() ? "" : ", ", part.size(), part.front());
+  }
+  survey.problems.push_back({"parts_by_tags",
+                             fmt::format("{} parts of the survey have no features in common ({}): their places and heights against each other are "
+                                         "as accurate as their tags",
+                                         parts.size(), names),
+                             "Take photos between the parts, or measure control points in each (--gcp)"});
+}
+
 // For a model without any.
 std::vector<survey::ColmapPoint> PointsFromPoses(const poses::ColmapJob& job, const survey::ColmapModel& model,
                                                  const std::vector<input::PreparedPhoto>& prepared, const poses::PoseOptions& options,
@@ -460,6 +476,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
     return *measured;
   };
   const auto focal_sigma = [&] { return lens().focal_sigma; };
+  if (own_poses) NoteParts(model, survey);
   // An exact frame is the truth, whatever the tags say.
   if (!folders.exact_origin) CheckAgainstTags(prepared, georeference.gimbal, own_poses, focal_sigma, survey);
   if (on_placed) on_placed(survey, poses_known);

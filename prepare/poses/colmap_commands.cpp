@@ -126,25 +126,17 @@ void MakeModels(const ColmapJob& job, const ColmapSettings& settings, size_t n_p
   RunWithProgress(job, command, "find poses", n_photos);
 }
 
-FoundModel LargestModel(const ColmapJob& job) {
-  FoundModel best;
-  size_t n_models = 0;
-  std::vector<fs::path> folders;
+std::vector<FoundModel> FoundModels(const ColmapJob& job) {
+  std::vector<FoundModel> models;
   for (const fs::directory_entry& entry : fs::directory_iterator(job.Models())) {
-    if (entry.is_directory() && fs::exists(entry.path() / "images.bin")) folders.push_back(entry.path());
+    if (!entry.is_directory() || !fs::exists(entry.path() / "images.bin")) continue;
+    models.push_back({entry.path(), survey::CountColmapImages(entry.path())});
   }
-  std::sort(folders.begin(), folders.end());
-  for (const fs::path& folder : folders) {
-    const size_t n_photos = survey::CountColmapImages(folder);
-    ++n_models;
-    if (n_photos > best.n_photos) best = {folder, n_photos};
-  }
-  if (best.folder.empty()) throw NoModelError(job.Log(), "COLMAP found no model", kNoModelFix);
-  if (n_models > 1)
-    base::LogWarning(
-        "COLMAP found {} models that do not connect; only the largest is used, with {} photos ({}). Photos between them would connect them", n_models,
-        best.n_photos, best.folder.string());
-  return best;
+  if (models.empty()) throw NoModelError(job.Log(), "COLMAP found no model", kNoModelFix);
+  std::sort(models.begin(), models.end(), [](const FoundModel& a, const FoundModel& b) {
+    return a.n_photos != b.n_photos ? a.n_photos > b.n_photos : a.folder < b.folder;
+  });
+  return models;
 }
 
 }  // namespace skyquilt::prepare::poses

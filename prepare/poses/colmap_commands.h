@@ -40,7 +40,7 @@ struct FoundModel {
   std::filesystem::path folder;
   size_t n_photos = 0;
 };
-// The model with the most photos; others are mentioned in a warning. Throws base::InputError when there is none.
-FoundModel LargestModel(const ColmapJob& job);
+// The mapper's models, the one with the most photos first. Throws NoModelError when there is none.
+std::vector<FoundModel> FoundModels(const ColmapJob& job);
 
 }  // namespace skyquilt::prepare::poses

@@ -16,7 +16,9 @@
 #include "prepare/poses/extract_features.h"
 #include "prepare/poses/fill_database.h"
 #include "prepare/poses/focal_check.h"
+#include "prepare/poses/join_parts.h"
 #include "prepare/poses/loose_photos.h"
+#include "prepare/poses/seed/verdict.h"
 #include "prepare/poses/seed_model.h"
 #include "prepare/poses/shot_poses.h"
 
@@ -92,19 +94,44 @@ std::optional<FarFocal> FarFocalOf(const ColmapJob& job, const FoundModel& model
   return FindFarFocal(survey::ReadColmapModel(model.folder), survey::ColmapDatabase(job.Database()).ReadCameras());
 }
 
-// The model, or the same without the photos that it has no reason to place, beside the folder of the mapper's models.
-FoundModel WithoutLoosePhotos(const ColmapJob& job, const FoundModel& found) {
-  const fs::path folder = job.folder / (job.models + "_tied");
-  fs::remove_all(folder);
-  survey::ColmapModel model = survey::ReadColmapModel(found.folder);
-  survey::ColmapObservations observations = survey::ReadColmapObservations(found.folder);
-  const std::vector<std::string> removed = RemoveLoosePhotos(model, observations);
-  if (removed.empty()) return found;
+// Takes out the photos that the model has no reason to place. False when there are none.
+bool RemoveLoose(Part& part) {
+  const std::vector<std::string> removed = RemoveLoosePhotos(part.model, part.observations);
+  if (removed.empty()) return false;
   const std::vector<std::string> named(removed.begin(), removed.begin() + static_cast<std::ptrdiff_t>(std::min(removed.size(), kMostNamed)));
   base::LogWarning("{} photos get no pose, because they have fewer than {} points in common with each of the others: {}{}", removed.size(),
                    kLeastTied, base::Join(named), removed.size() > kMostNamed ? ", ..." : "");
-  survey::WriteColmapBinary(model, observations, folder);
-  return {folder, model.images.size()};
+  return true;
+}
+
+// In a folder beside that of the mapper's models.
+FoundModel Save(const ColmapJob& job, const std::string& suffix, const Part& part) {
+  const fs::path folder = job.folder / (job.models + suffix);
+  fs::remove_all(folder);
+  survey::WriteColmapBinary(part.model, part.observations, folder);
+  return {folder, part.model.images.size()};
+}
+
+// The largest of the mapper's models, or with the others that tags place beside it.
+FoundModel MappedModel(const Attempt& attempt, const std::vector<input::PhotoFile>& photos, const PoseOptions& options) {
+  const ColmapJob& job = attempt.job;
+  const std::vector<FoundModel> models = FoundModels(job);
+  std::vector<Part> parts;
+  bool loose = false;
+  for (const FoundModel& found : models) {
+    if (!parts.empty() && found.n_photos < kLeastOfPart) break;
+    parts.push_back({survey::ReadColmapModel(found.folder), survey::ReadColmapObservations(found.folder)});
+    const bool removed = options.fast && RemoveLoose(parts.back());
+    if (parts.size() == 1) loose = removed;
+  }
+  // More pairs may connect parts that show the same ground.
+  if (const std::optional<Part> joined = JoinParts(parts, photos, attempt.settings.fast)) return Save(job, "_joined", *joined);
+  if (models.size() > 1) {
+    base::LogWarning(
+        "COLMAP found {} models that do not connect; only the largest is used, with {} photos ({}). Photos between them would connect them", models.size(),
+        parts.front().model.images.size(), models.front().folder.string());
+  }
+  return loose ? Save(job, "_tied", parts.front()) : models.front();
 }
 
 // The model, or one in which the photos of each shot of a rig have one pose. `hash`: of what the model depends on.
@@ -132,8 +159,7 @@ FoundModel FindModel(const Attempt& attempt, const StepHashes& hashes, const std
     }
   }
   RunStep(job, mapper, {}, [&] { MakeModels(job, attempt.settings, photos.size(), options); });
-  const FoundModel mapped = options.fast ? WithoutLoosePhotos(job, LargestModel(job)) : LargestModel(job);
-  return PlacedByRigs(attempt, mapped, hashes.model, photos, threads);
+  return PlacedByRigs(attempt, MappedModel(attempt, photos, options), hashes.model, photos, threads);
 }
 
 // What an attempt gave.

@@ -26,30 +26,31 @@ std::unordered_map<uint64_t, size_t> CommonPoints(const survey::ColmapModel& mod
   return common;
 }
 
-// Ids of the largest group of photos.
-std::unordered_set<uint32_t> LargestGroup(const survey::ColmapModel& model) {
+}  // namespace
+
+std::vector<std::vector<std::string>> TiedPhotos(const survey::ColmapModel& model) {
   std::unordered_map<uint32_t, uint32_t> index;
   for (const survey::ColmapImage& image : model.images) index.emplace(image.id, static_cast<uint32_t>(index.size()));
-  base::DisjointSets groups(index.size());
+  base::DisjointSets sets(index.size());
   for (const auto& [pair, n] : CommonPoints(model)) {
-    if (n >= kLeastTied) groups.Join(index.at(static_cast<uint32_t>(pair >> 32U)), index.at(static_cast<uint32_t>(pair)));
+    if (n >= kLeastTied) sets.Join(index.at(static_cast<uint32_t>(pair >> 32U)), index.at(static_cast<uint32_t>(pair)));
   }
-  std::map<uint32_t, std::unordered_set<uint32_t>> members;
-  for (const survey::ColmapImage& image : model.images) members[groups.Root(index.at(image.id))].insert(image.id);
-  const auto largest =
-      std::max_element(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
-  return largest == members.end() ? std::unordered_set<uint32_t>() : largest->second;
+  std::map<uint32_t, std::vector<std::string>> members;
+  for (const survey::ColmapImage& image : model.images) members[sets.Root(index.at(image.id))].push_back(image.name);
+  std::vector<std::vector<std::string>> groups;
+  for (auto& [root, names] : members) {
+    std::sort(names.begin(), names.end());
+    groups.push_back(std::move(names));
+  }
+  std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return groups;
 }
-
-}  // namespace
 
 std::vector<std::string> LoosePhotos(const survey::ColmapModel& model) {
   if (model.points.empty()) return {};
-  const std::unordered_set<uint32_t> tied = LargestGroup(model);
   std::vector<std::string> loose;
-  for (const survey::ColmapImage& image : model.images) {
-    if (!tied.contains(image.id)) loose.push_back(image.name);
-  }
+  const std::vector<std::vector<std::string>> groups = TiedPhotos(model);
+  for (size_t i = 1; i < groups.size(); ++i) loose.insert(loose.end(), groups[i].begin(), groups[i].end());
   std::sort(loose.begin(), loose.end());
   return loose;
 }

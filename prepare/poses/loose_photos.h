@@ -10,6 +10,8 @@
 
 namespace skyquilt::prepare::poses {
 
+// Names of the photos, in name order, that are tied together by at least kLeastTied common points of two photos each, the largest group first.
+std::vector<std::vector<std::string>> TiedPhotos(const survey::ColmapModel& model);
 // Names, in name order, of the photos outside of the largest group that is tied together by at least kLeastTied common points of two photos each. Of
 // a model without points nothing can be said: then there are none.
 std::vector<std::string> LoosePhotos(const survey::ColmapModel& model);

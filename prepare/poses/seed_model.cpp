@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSeedVersion = 4;  // a new number makes finished models anew
+constexpr int kSeedVersion = 5;  // a new number makes finished models anew
 
 fs::path SeededFolder(const ColmapJob& job) {
   return job.folder / "seeded";

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/order_statistics.h"
+#include "prepare/poses/seed/verdict.h"
 
 namespace skyquilt::prepare::poses {
 namespace {
@@ -80,9 +81,27 @@ Differences DifferencesOf(const PairRays& pair, const std::vector<SeedView>& vie
 
 }  // namespace
 
+std::vector<char> FindChancePairs(const std::vector<PairRays>& pairs, size_t n_views) {
+  std::vector<size_t> most(n_views, 0);
+  for (const PairRays& pair : pairs) {
+    most[pair.a] = std::max(most[pair.a], pair.n_matches);
+    most[pair.b] = std::max(most[pair.b], pair.n_matches);
+  }
+  std::vector<char> chance;
+  chance.reserve(pairs.size());
+  for (const PairRays& pair : pairs) {
+    const auto few = kStrangersShare * static_cast<double>(std::min(most[pair.a], most[pair.b]));
+    chance.push_back(pair.n_matches < kStrangersMatches && static_cast<double>(pair.n_matches) < few ? 1 : 0);
+  }
+  return chance;
+}
+
 GroundCheck CheckGround(const std::vector<PairRays>& pairs, const std::vector<SeedView>& views) {
   std::vector<PairMotion> motions;
-  for (const PairRays& pair : pairs) {
+  const std::vector<char> chance = FindChancePairs(pairs, views.size());
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    const PairRays& pair = pairs[i];
+    if (chance[i] != 0) continue;
     if (!views[pair.a].known || !views[pair.b].known) continue;
     const Differences rays = DifferencesOf(pair, views);
     if (rays.match.size() < kLeastMatches) continue;

@@ -14,6 +14,7 @@ namespace skyquilt::prepare::poses {
 struct PairRays {
   uint32_t a = 0, b = 0;
   std::vector<Eigen::Vector3d> ray_a, ray_b;
+  size_t n_matches = 0;  // all that there are
 };
 
 struct SeedView {
@@ -23,13 +24,17 @@ struct SeedView {
 };
 
 struct GroundCheck {
-  size_t n_pairs = 0;           // that could be compared: both photos known and looking at the ground
+  size_t n_pairs = 0;           // that could be compared: both photos known and looking at the ground, not by chance
   double share_agreeing = 0.0;  // of them
   double height_m = 0.0;        // of the cameras above the ground; 0 when unknown
   double turn_rad = 0.0;        // to be added to all directions, counter-clockwise seen from above
 };
 
+// Pairs that may be by chance (FindChancePairs) say nothing.
 GroundCheck CheckGround(const std::vector<PairRays>& pairs, const std::vector<SeedView>& views);
+
+// Per pair: whether it has so few matches as photos of different places have by chance, while both photos have others with far more.
+std::vector<char> FindChancePairs(const std::vector<PairRays>& pairs, size_t n_views);
 
 // For the pair: which matches, given as directions, move from photo to photo like most others do. Wrong matches rarely do; points on tall buildings
 // still may.

@@ -75,7 +75,7 @@ class Seeding {
     Complete(4.0);
     if (!Adjust("final poses", Last(1e-6))) return kNoSolution;
     bundle::TriangulateAll(bundle_, FinalThreshold(), threads_);
-    if (RemoveContradicted(bundle_) > 0) bundle::TriangulateAll(bundle_, FinalThreshold(), threads_);
+    if (RemoveContradicted(bundle_, start_.height_m) > 0) bundle::TriangulateAll(bundle_, FinalThreshold(), threads_);
     progress_.Finish();
     return "";
   }
@@ -97,7 +97,7 @@ class Seeding {
   // Points of all tracks, photos that contradict them removed, those without pose placed by them, and tracks chosen anew among what agrees.
   void Complete(double threshold) {
     bundle::TriangulateAll(bundle_, threshold, threads_);
-    const size_t removed = RemoveContradicted(bundle_);
+    const size_t removed = RemoveContradicted(bundle_, start_.height_m);
     if (removed > 0) bundle::TriangulateAll(bundle_, threshold, threads_);
     // Photos that see only others without a pose follow in a second round.
     for (int round = 0; round < 2 && bundle::ResectPhotos(bundle_, 2.0 * threshold) > 0; ++round)

@@ -10,6 +10,7 @@
 #include "core/base/order_statistics.h"
 #include "core/geo/ecef.h"
 #include "core/geo/enu_frame.h"
+#include "prepare/poses/seed/footprint.h"
 #include "prepare/poses/seed/seed_rotation.h"
 
 namespace skyquilt::prepare::poses {
@@ -109,6 +110,22 @@ Tried Try(const SeedSurvey& survey, std::vector<SeedView> views, bool by_gimbal)
   return tried;
 }
 
+// Per pair: whether its matches are by chance, as few are between photos that show different ground by their tags. Enough of them bend a survey
+// whose parts have no others in common.
+std::vector<char> FindWrongPairs(const SeedSurvey& survey, const SeedStart& start) {
+  std::vector<char> wrong = FindChancePairs(survey.rays, survey.photos.size());
+  const auto footprint = [&](uint32_t i) {
+    const SeedView& view = start.views[i];
+    return FootprintOf(survey.lenses[static_cast<size_t>(survey.photos[i].lens)].camera, view.cam_from_enu, view.centre, start.height_m);
+  };
+  for (size_t k = 0; k < wrong.size(); ++k) {
+    const SeedPair& pair = survey.pairs[k];
+    const bool known = start.views[pair.a].known && start.views[pair.b].known;
+    if (!known || !footprint(pair.a).IsFarFrom(footprint(pair.b))) wrong[k] = 0;
+  }
+  return wrong;
+}
+
 }  // namespace
 
 bool MakeSeedSurvey(const SeedInput& input, SeedSurvey* survey, std::string* reason) {
@@ -162,7 +179,7 @@ bool MakeSeedSurvey(const SeedInput& input, SeedSurvey* survey, std::string* rea
   }
   for (const SeedPair& pair : survey->pairs) {
     const size_t step = std::max<size_t>(1, (pair.features.size() + kMaxRays - 1) / kMaxRays);
-    survey->rays.push_back({pair.a, pair.b, RaysOf(*survey, pair, 0, step), RaysOf(*survey, pair, 1, step)});
+    survey->rays.push_back({pair.a, pair.b, RaysOf(*survey, pair, 0, step), RaysOf(*survey, pair, 1, step), pair.features.size()});
   }
   return true;
 }
@@ -225,15 +242,17 @@ bundle::BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& star
     photo.centre = view.centre;
     photo.tagged_rotation = view.cam_from_enu;
   }
+  const std::vector<char> wrong = FindWrongPairs(survey, start);
   std::vector<bundle::IndexedPair> pairs(survey.pairs.size());
   threads.ParallelFor(static_cast<int64_t>(pairs.size()), [&](int64_t k, int) {
     base::ThrowIfCancelled();
     const SeedPair& pair = survey.pairs[static_cast<size_t>(k)];
-    const PairRays rays{pair.a, pair.b, RaysOf(survey, pair, 0, 1), RaysOf(survey, pair, 1, 1)};
+    const PairRays rays{pair.a, pair.b, RaysOf(survey, pair, 0, 1), RaysOf(survey, pair, 1, 1), pair.features.size()};
     const std::vector<char> like = MovesLikeOthers(rays, start.views);
     bundle::IndexedPair& kept = pairs[static_cast<size_t>(k)];
     kept.a = pair.a;
     kept.b = pair.b;
+    if (wrong[static_cast<size_t>(k)] != 0) return;
     for (size_t m = 0; m < pair.features.size(); ++m) {
       if (like[m] != 0) kept.features.push_back(pair.features[m]);
     }

@@ -50,7 +50,8 @@ struct SeedStart {
 // why.
 std::vector<SeedStart> FindStarts(const SeedSurvey& survey, std::string* reason);
 
-// The bundle with these poses, and the tracks of the matches that move like the others of their pair.
+// The bundle with these poses, and the tracks of the matches that move like the others of their pair. Pairs that may be by chance have none where
+// their photos show different ground.
 bundle::BundleProblem MakeBundle(const SeedSurvey& survey, const SeedStart& start, base::ThreadPool& threads);
 
 }  // namespace skyquilt::prepare::poses

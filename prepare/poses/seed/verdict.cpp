@@ -1,13 +1,16 @@
 #include "prepare/poses/seed/verdict.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <map>
 #include <numeric>
 #include <unordered_map>
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/order_statistics.h"
 #include "prepare/bundle/resect.h"
+#include "prepare/poses/seed/footprint.h"
 
 namespace skyquilt::prepare::poses {
 namespace {
@@ -59,20 +62,69 @@ std::unordered_map<uint64_t, size_t> SharedPoints(const bundle::BundleProblem& b
   return shared;
 }
 
-size_t KeepLargestGroup(bundle::BundleProblem& bundle) {
-  base::DisjointSets groups(bundle.photos.size());
+// Placed photos that are tied together by common points, the largest group first.
+std::vector<std::vector<uint32_t>> TiedGroups(const bundle::BundleProblem& bundle) {
+  base::DisjointSets sets(bundle.photos.size());
   for (const auto& [pair, n] : SharedPoints(bundle)) {
-    if (n < kLeastShared) continue;
-    groups.Join(static_cast<uint32_t>(pair >> 32U), static_cast<uint32_t>(pair));
+    if (n >= kLeastShared) sets.Join(static_cast<uint32_t>(pair >> 32U), static_cast<uint32_t>(pair));
   }
-  std::vector<size_t> size(bundle.photos.size(), 0);
-  for (uint32_t i = 0; i < size.size(); ++i) size[groups.Root(i)] += bundle.photos[i].placed ? 1 : 0;
-  const auto largest = static_cast<uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+  std::map<uint32_t, std::vector<uint32_t>> members;
+  for (uint32_t i = 0; i < bundle.photos.size(); ++i) {
+    if (bundle.photos[i].placed) members[sets.Root(i)].push_back(i);
+  }
+  std::vector<std::vector<uint32_t>> groups;
+  for (auto& [root, group] : members) groups.push_back(std::move(group));
+  std::stable_sort(groups.begin(), groups.end(), [](const auto& one, const auto& other) { return one.size() > other.size(); });
+  return groups;
+}
+
+// Tags hold the frame of a group: enough of them, with angles, or else in a plane and not on a line.
+bool IsHeldByTags(const bundle::BundleProblem& bundle, const std::vector<uint32_t>& group, double height_m) {
+  std::vector<Eigen::Vector2d> places;
+  size_t n_angles = 0;
+  for (const uint32_t i : group) {
+    if (!bundle.photos[i].gps) continue;
+    places.push_back(bundle.photos[i].gps->head<2>());
+    n_angles += bundle.photos[i].tagged_rotation ? 1 : 0;
+  }
+  if (places.size() < kLeastOfPart) return false;
+  if (n_angles >= kLeastOfPart) return true;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& place : places) mean += place / static_cast<double>(places.size());
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& place : places) spread += (place - mean) * (place - mean).transpose() / static_cast<double>(places.size());
+  constexpr double kLeastWidth = 0.1;  // of the height, one standard deviation
+  const double half_trace = 0.5 * spread.trace();
+  const double smaller = half_trace - std::sqrt(std::max(half_trace * half_trace - spread.determinant(), 0.0));
+  return smaller > std::pow(kLeastWidth * height_m, 2);
+}
+
+bool AreApart(const bundle::BundleProblem& bundle, const std::vector<uint32_t>& one, const std::vector<uint32_t>& other, double height_m) {
+  const auto footprint = [&](uint32_t i) {
+    const bundle::BundlePhoto& photo = bundle.photos[i];
+    return FootprintOf(bundle.lenses[static_cast<size_t>(photo.lens)].camera, photo.cam_from_enu, photo.centre, height_m);
+  };
+  std::vector<Footprint> others;
+  for (const uint32_t i : other) others.push_back(footprint(i));
+  return std::all_of(one.begin(), one.end(), [&](uint32_t i) {
+    const Footprint own = footprint(i);
+    return std::none_of(others.begin(), others.end(), [&](const Footprint& there) { return own.IsLike(there); });
+  });
+}
+
+// Of groups that nothing ties, the largest stays, and those that tags can place beside it.
+size_t RemoveUntied(bundle::BundleProblem& bundle, std::optional<double> height_m) {
+  const std::vector<std::vector<uint32_t>> groups = TiedGroups(bundle);
   size_t removed = 0;
-  for (uint32_t i = 0; i < size.size(); ++i) {
-    if (!bundle.photos[i].placed || groups.Root(i) == largest) continue;
-    bundle.photos[i].placed = false;
-    ++removed;
+  std::vector<const std::vector<uint32_t>*> kept;
+  for (const std::vector<uint32_t>& group : groups) {
+    const auto is_apart = [&](const auto* other) { return AreApart(bundle, group, *other, *height_m); };
+    if (kept.empty() || (height_m && IsHeldByTags(bundle, group, *height_m) && std::all_of(kept.begin(), kept.end(), is_apart))) {
+      kept.push_back(&group);
+      continue;
+    }
+    for (const uint32_t i : group) bundle.photos[i].placed = false;
+    removed += group.size();
   }
   return removed;
 }
@@ -133,7 +185,7 @@ std::string Fixed(double value) {
 
 }  // namespace
 
-size_t RemoveContradicted(bundle::BundleProblem& bundle) {
+size_t RemoveContradicted(bundle::BundleProblem& bundle, std::optional<double> height_m) {
   const Tally tally = Count(bundle);
   size_t removed = 0;
   for (size_t i = 0; i < bundle.photos.size(); ++i) {
@@ -143,7 +195,7 @@ size_t RemoveContradicted(bundle::BundleProblem& bundle) {
     bundle.photos[i].placed = false;
     ++removed;
   }
-  return removed + KeepLargestGroup(bundle);
+  return removed + RemoveUntied(bundle, height_m);
 }
 
 Verdict Judge(const bundle::BundleProblem& bundle, double height_m) {

@@ -1,6 +1,7 @@
 // Judges the poses by the matches: which photos keep theirs, and whether the whole can be trusted.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "prepare/bundle/bundle_problem.h"
@@ -8,11 +9,13 @@
 namespace skyquilt::prepare::poses {
 
 // Takes the pose from photos with fewer than kLeastObservations agreeing entries or with less than kLeastShare of those that should agree, and from
-// those that share points only with few others: the largest group that is tied together by at least kLeastShared common points each remains. Returns
-// the number of photos that lost their pose. Entries must be up to date (Triangulate).
-size_t RemoveContradicted(bundle::BundleProblem& bundle);
+// those that share points only with few others: the largest group that is tied together by at least kLeastShared common points each remains. With
+// `height_m`, the height above ground, so does every other group that shows other ground, or from other sides, and whose tags hold it: at least kLeastOfPart photos have
+// them, and angles, or they are on no line. Returns the number of photos that lost their pose. Entries must be up to date (Triangulate).
+size_t RemoveContradicted(bundle::BundleProblem& bundle, std::optional<double> height_m = {});
 constexpr double kLeastShare = 0.25;
 constexpr size_t kLeastShared = 10;
+constexpr size_t kLeastOfPart = 8;
 
 // A photo without a pose is a stranger when it has fewer tracks than this in common with each placed photo, and fewer than this share of what placed
 // photos have with the one that is most like them. Photos of another place have 17 to 30 matches by chance that agree with one geometry.

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -73,6 +74,33 @@ TEST_F(SeedPosesTest, FindsPosesAndLensByGimbal) {
   ExpectRight(made, seeded, 30);
   EXPECT_TRUE(seeded->by_gimbal);
   EXPECT_LT(seeded->median_gps_m, 4.0);
+}
+
+// Two zones of a survey without a photo between them: each is as good as alone, and tags place them beside each other.
+TEST_F(SeedPosesTest, PartsWithoutCommonFeaturesArePlacedByTheirTags) {
+  for (const bool gimbal : {true, false}) {
+    const MadeSurvey made = MakeSurvey({.strips = 6, .gimbal_tags = gimbal, .chance_matches = gimbal ? 20 : 0, .gap_m = 200.0, .seed = 7});
+    const auto seeded = SeedPoses(made.input, threads_, &reason_);
+    ASSERT_TRUE(seeded) << reason_;
+    ASSERT_EQ(seeded->model.images.size(), 36U);
+    // In ENU about a tag; of all photos, and of each part.
+    std::array<survey::ColmapModel, 2> parts;
+    for (const survey::ColmapImage& image : seeded->model.images) parts[image.id <= 18 ? 0 : 1].images.push_back(image);
+    for (const survey::ColmapModel& part : parts) {
+      ASSERT_EQ(part.images.size(), 18U);
+      EXPECT_LT(Compare(made, part).centre_m, 0.15);
+    }
+    // The means of 18 tags with errors of 1.5 m and 3 m.
+    EXPECT_LT(Compare(made, seeded->model).worst_m, 3.0);
+    EXPECT_LT(Compare(made, seeded->model).worst_deg, 2.0);
+  }
+}
+
+TEST_F(SeedPosesTest, PartsThatShowTheSameGroundMustHaveFeaturesInCommon) {
+  MadeSurvey made = MakeSurvey({.strips = 6, .seed = 8});
+  std::erase_if(made.input.pairs, [](const auto& pair) { return (pair.image_a <= 18) != (pair.image_b <= 18); });
+  EXPECT_FALSE(SeedPoses(made.input, threads_, &reason_));
+  EXPECT_NE(reason_.find("only 18 of 36 photos fit together"), std::string::npos) << reason_;
 }
 
 TEST_F(SeedPosesTest, AFifthOfTheMatchesWrong) {

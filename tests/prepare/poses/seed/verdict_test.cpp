@@ -34,6 +34,48 @@ class VerdictTest : public testing::Test {
   uint32_t feature_ = 0;
 };
 
+// Two strips of ten photos that look down, 10 m apart along the strip; `apart_m`: between the strips.
+class Parts : public VerdictTest {
+ protected:
+  size_t RemovedOf(double apart_m, bool tags, bool angles, std::optional<double> height_m = 80.0) {
+    bundle_ = {};
+    bundle_.lenses.resize(1);
+    bundle_.lenses[0].camera = {camera::CameraModel::kPinhole, 1600, 1200, {1400.0, 1400.0, 800.0, 600.0}};
+    bundle_.photos.resize(2 * kEach);
+    for (uint32_t i = 0; i < 2 * kEach; ++i) {
+      bundle::BundlePhoto& photo = bundle_.photos[i];
+      photo.placed = true;
+      photo.cam_from_enu = Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0);
+      photo.centre = Eigen::Vector3d(10.0 * (i % kEach), i < kEach ? 0.0 : apart_m, 80.0);
+      if (tags) photo.gps = photo.centre;
+      if (angles) photo.tagged_rotation = photo.cam_from_enu;
+    }
+    for (uint32_t i = 0; i + 1 < 2 * kEach; ++i) {
+      if (i + 1 != kEach) Add({i, i + 1}, 100);
+    }
+    bundle_.has_point.assign(bundle_.tracks.size(), 1);
+    return RemoveContradicted(bundle_, height_m);
+  }
+  static constexpr uint32_t kEach = 10;
+};
+
+using PartsOfASurvey = Parts;
+
+TEST_F(PartsOfASurvey, StayWhenTagsHoldThemOverOtherGround) {
+  EXPECT_EQ(RemovedOf(200.0, true, true), 0U);
+}
+
+TEST_F(PartsOfASurvey, MustBeTiedWhereTheyShowTheSameGround) {
+  // A photo shows 80 m x 1600 / 1400 = 91 m across.
+  EXPECT_EQ(RemovedOf(50.0, true, true), kEach);
+  EXPECT_EQ(RemovedOf(200.0, true, true, {}), kEach);
+}
+
+TEST_F(PartsOfASurvey, OnOneLineNeedAngles) {
+  EXPECT_EQ(RemovedOf(200.0, true, false), kEach);
+  EXPECT_EQ(RemovedOf(200.0, false, false), kEach);
+}
+
 TEST_F(VerdictTest, APhotoOfAnotherPlaceDoesNotSpeakAgainstTheOthers) {
   for (uint32_t i = 0; i < kLast; ++i) Add({i, kLast}, 30);
   const Verdict verdict = Judge(bundle_, 80.0);

@@ -59,11 +59,15 @@ void AddPlaceFlag(CLI::App& command, const std::string& names, const std::functi
 void AddModelFlag(CLI::App& command, std::string& model);
 // --gcp: a file, stored as an absolute path; --check-points.
 void AddControlFlags(CLI::App& command, const Overrides& overrides);
-// The input of `prepare` and `run`: a folder of photos or of videos, or video files.
+// The input of `prepare` and `run`: a folder of photos or of videos, several folders of photos, or video files.
 void AddPhotosArgument(CLI::App& command, std::vector<std::string>& photos);
-// Videos among these, for Pipeline::videos; empty for a folder. Throws base::InputError when nothing is there, base::UsageError for a folder beside
-// others.
+// These when they are several folders, else none.
+std::vector<std::filesystem::path> ZonesAmong(const std::vector<std::string>& photos);
+// Videos among these, for Pipeline::videos; empty for folders. Throws base::InputError when nothing is there, base::UsageError for a folder beside
+// videos.
 std::vector<std::filesystem::path> VideosAmong(const std::vector<std::string>& photos);
+// The folder of the photos; of several folders one with links to them, in the project (prepare/input/zones.h). Not used for videos.
+std::filesystem::path PhotoFolderOf(const std::vector<std::string>& photos, const coordinator::Project& project);
 // --video-limit.
 void AddVideoFlags(CLI::App& command, const Overrides& overrides);
 // --panoramas, --rig: a file, stored as an absolute path; --nadir-mask.

@@ -30,6 +30,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
   command->footer(
       "Examples:\n"
       "  skyquilt prepare photos/ -o out\n"
+      "  skyquilt prepare monday/ tuesday/ -o out\n"
       "  skyquilt prepare DJI_0001.MP4 DJI_0002.MP4 -o out --video-limit 300\n"
       "  skyquilt prepare panoramas/ -o out --nadir-mask 25\n"
       "  skyquilt prepare photos/ --model sparse/0 -o out\n"
@@ -45,7 +46,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
       coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags->out), std::move(settings), flags->restart);
       pipeline.level_settings = state.LoadForLevelPhotos(*overrides);
       pipeline.videos = std::move(videos);
-      coordinator::PrepareStage(pipeline, flags->photos.front(), flags->model);
+      coordinator::PrepareStage(pipeline, PhotoFolderOf(flags->photos, pipeline.project), flags->model);
     };
   });
 }

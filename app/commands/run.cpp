@@ -25,8 +25,8 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   coordinator::Settings settings = state.Load({}, overrides);
   // Checked before the output folder is created and before hours of work.
   std::vector<std::filesystem::path> videos = VideosAmong(flags.photos);
-  const std::string photos = flags.photos.empty() ? std::string() : flags.photos.front();
-  coordinator::RequireInputs(settings, videos.empty() ? photos : std::string(), flags.model);
+  const std::string first = flags.photos.empty() || !videos.empty() ? std::string() : flags.photos.front();
+  coordinator::RequireInputs(settings, first, flags.model);
   if (coordinator::StageNamed("tour").wanted(settings)) viewer::TourPage(state.front_end);
   coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags.out), std::move(settings), flags.restart);
   pipeline.level_settings = state.LoadForLevelPhotos(overrides);
@@ -34,7 +34,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   coordinator::UseTotalTime(pipeline);
   coordinator::RecallLevelSettings(pipeline);
   coordinator::RequireSameConfiguration(pipeline, "prepare");
-  coordinator::RunStages(pipeline, photos, flags.model);
+  coordinator::RunStages(pipeline, PhotoFolderOf(flags.photos, pipeline.project), flags.model);
   coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
 }
 
@@ -75,6 +75,7 @@ void AddRun(CLI::App& app, CommandState& state) {
       "  skyquilt run photos/ -o out --within 20min\n"
       "  skyquilt run photos/ -o out --blocks 2x2 --time-budget 10min --image-width 1000\n"
       "  skyquilt run photos/ --model sparse/0 -o out --blocks 3x3 --time-budget 15min\n"
+      "  skyquilt run monday/ tuesday/ -o out --within 1h\n"
       "  skyquilt run DJI_0001.MP4 -o out --within 30min\n"
       "  skyquilt run --place town -o out/town --steps 3000\n"
       "  mpirun -n 3 skyquilt run photos/ -o out --time-budget 1h30m\n"

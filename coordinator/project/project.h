@@ -38,6 +38,7 @@ struct Project {
   std::filesystem::path ConfigFile() const { return folder / "config.toml"; }
   std::filesystem::path PlanFile() const { return folder / "plan.json"; }
   std::filesystem::path LogFile() const { return folder / "log.txt"; }
+  std::filesystem::path ZonesFolder() const { return folder / "zones"; }
   std::filesystem::path StateFolder() const { return folder / ".state"; }
   std::filesystem::path TrainLedgerFile() const { return StateFolder() / "training.json"; }
   std::filesystem::path TourProposal() const { return StateFolder() / "tour_proposal.txt"; }

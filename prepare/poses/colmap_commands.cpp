@@ -133,9 +133,8 @@ std::vector<FoundModel> FoundModels(const ColmapJob& job) {
     models.push_back({entry.path(), survey::CountColmapImages(entry.path())});
   }
   if (models.empty()) throw NoModelError(job.Log(), "COLMAP found no model", kNoModelFix);
-  std::sort(models.begin(), models.end(), [](const FoundModel& a, const FoundModel& b) {
-    return a.n_photos != b.n_photos ? a.n_photos > b.n_photos : a.folder < b.folder;
-  });
+  std::sort(models.begin(), models.end(),
+            [](const FoundModel& a, const FoundModel& b) { return a.n_photos != b.n_photos ? a.n_photos > b.n_photos : a.folder < b.folder; });
   return models;
 }
 

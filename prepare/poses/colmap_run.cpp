@@ -128,8 +128,8 @@ FoundModel MappedModel(const Attempt& attempt, const std::vector<input::PhotoFil
   if (const std::optional<Part> joined = JoinParts(parts, photos, attempt.settings.fast)) return Save(job, "_joined", *joined);
   if (models.size() > 1) {
     base::LogWarning(
-        "COLMAP found {} models that do not connect; only the largest is used, with {} photos ({}). Photos between them would connect them", models.size(),
-        parts.front().model.images.size(), models.front().folder.string());
+        "COLMAP found {} models that do not connect; only the largest is used, with {} photos ({}). Photos between them would connect them",
+        models.size(), parts.front().model.images.size(), models.front().folder.string());
   }
   return loose ? Save(job, "_tied", parts.front()) : models.front();
 }

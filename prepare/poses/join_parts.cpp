@@ -24,8 +24,8 @@ constexpr double kLeastAgreeing = 0.7;  // of the tags
 constexpr double kFewLike = 0.1;        // of a part's photos, for parts that show other ground
 
 struct TaggedPose {
-  Eigen::Vector3d centre;                               // in the model
-  Eigen::Vector3d place;                                // ENU metres
+  Eigen::Vector3d centre;                                 // in the model
+  Eigen::Vector3d place;                                  // ENU metres
   std::optional<Eigen::Quaterniond> enu_from_model = {};  // by gimbal angles
 };
 
@@ -268,7 +268,8 @@ std::optional<Part> JoinParts(const std::vector<Part>& parts, const std::vector<
   for (size_t i = 1; i < placed.size(); ++i) {
     const std::vector<Footprint> footprints = FootprintsOf(placed[i].model);
     if (only_apart && !AreApart(footprints, shown)) continue;
-    names += fmt::format(", {} such as {} ({:.1f} m from their tags)", placed[i].model.images.size(), placed[i].model.images.front().name, median_m[i]);
+    names +=
+        fmt::format(", {} such as {} ({:.1f} m from their tags)", placed[i].model.images.size(), placed[i].model.images.front().name, median_m[i]);
     shown.insert(shown.end(), footprints.begin(), footprints.end());
     Append(std::move(placed[i]), whole);
     ++n_joined;

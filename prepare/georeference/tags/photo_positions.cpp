@@ -54,6 +54,18 @@ fs::path GeoFileOf(const fs::path& photo_root, const std::string& geo_file) {
   return photo_root.filename() == "images" && fs::exists(beside) ? beside : fs::path();
 }
 
+// Of folders in the photo folder, as of zones, in name order.
+std::vector<fs::path> GeoFilesInside(const fs::path& photo_root) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(photo_root, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored) && fs::is_regular_file(entry->path() / "geo.txt", ignored)) files.push_back(entry->path() / "geo.txt");
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 void UseGeoFile(const fs::path& file, std::vector<input::PhotoFile>& photos) {
   const GeoTable table = ReadGeoTable(file, photos);
   for (const std::string& warning : table.warnings) base::LogWarning("{}", warning);
@@ -188,10 +200,12 @@ std::vector<MrkRow> ReadMrkFile(const fs::path& file) {
 std::vector<fs::path> PositionFiles(const fs::path& photo_root, const std::string& geo_file) {
   const fs::path table = GeoFileOf(photo_root, geo_file);
   if (!table.empty()) return {table};
-  std::vector<fs::path> logs;
+  std::vector<fs::path> logs = GeoFilesInside(photo_root);
   std::error_code error;
-  for (fs::recursive_directory_iterator entry(photo_root, fs::directory_options::skip_permission_denied, error), end; !error && entry != end;
-       entry.increment(error)) {
+  for (fs::recursive_directory_iterator
+           entry(photo_root, fs::directory_options::skip_permission_denied | fs::directory_options::follow_directory_symlink, error),
+       end;
+       !error && entry != end; entry.increment(error)) {
     if (base::LowerCase(entry->path().extension().string()) == ".mrk") logs.push_back(entry->path());
   }
   std::sort(logs.begin(), logs.end());
@@ -202,6 +216,19 @@ void UsePositionFiles(const fs::path& photo_root, const std::string& geo_file, s
   const fs::path table = GeoFileOf(photo_root, geo_file);
   if (!table.empty()) return UseGeoFile(table, photos);
   UseMrkFiles(photo_root, photos);
+  for (const fs::path& file : GeoFilesInside(photo_root)) {
+    const std::string prefix = file.parent_path().filename().string() + "/";
+    std::vector<input::PhotoFile> inside;
+    std::vector<size_t> index;
+    for (size_t i = 0; i < photos.size(); ++i) {
+      if (!photos[i].name.starts_with(prefix)) continue;
+      inside.push_back(photos[i]);
+      index.push_back(i);
+    }
+    if (inside.empty()) continue;
+    UseGeoFile(file, inside);
+    for (size_t k = 0; k < index.size(); ++k) photos[index[k]] = std::move(inside[k]);
+  }
 }
 
 }  // namespace skyquilt::prepare::georeference

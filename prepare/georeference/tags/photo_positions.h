@@ -28,9 +28,9 @@ std::vector<MrkRow> ReadMrkFile(const std::filesystem::path& file);
 std::vector<std::filesystem::path> PositionFiles(const std::filesystem::path& photo_root, const std::string& geo_file);
 
 // Replaces position and accuracy in the tags of the photos that the files name, and logs it. `geo_file`: given by the user; empty: geo.txt in the
-// photo folder, or beside it when that is called images. Without either, every .MRK serves the photos of its folder, unless it contradicts their tags
-// or other .MRK files there number the same photos. Throws base::InputError for a file that the user gave or called geo.txt; a bad .MRK is left out
-// with a warning.
+// photo folder, or beside it when that is called images; else those of the folders in it, for the photos there. Without any, every .MRK serves the
+// photos of its folder, unless it contradicts their tags or other .MRK files there number the same photos. Throws base::InputError for a file that
+// the user gave or called geo.txt; a bad .MRK is left out with a warning.
 void UsePositionFiles(const std::filesystem::path& photo_root, const std::string& geo_file, std::vector<input::PhotoFile>& photos);
 
 }  // namespace skyquilt::prepare::georeference

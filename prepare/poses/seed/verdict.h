@@ -10,8 +10,9 @@ namespace skyquilt::prepare::poses {
 
 // Takes the pose from photos with fewer than kLeastObservations agreeing entries or with less than kLeastShare of those that should agree, and from
 // those that share points only with few others: the largest group that is tied together by at least kLeastShared common points each remains. With
-// `height_m`, the height above ground, so does every other group that shows other ground, or from other sides, and whose tags hold it: at least kLeastOfPart photos have
-// them, and angles, or they are on no line. Returns the number of photos that lost their pose. Entries must be up to date (Triangulate).
+// `height_m`, the height above ground, so does every other group that shows other ground, or from other sides, and whose tags hold it: at least
+// kLeastOfPart photos have them, and angles, or they are on no line. Returns the number of photos that lost their pose. Entries must be up to date
+// (Triangulate).
 size_t RemoveContradicted(bundle::BundleProblem& bundle, std::optional<double> height_m = {});
 constexpr double kLeastShare = 0.25;
 constexpr size_t kLeastShared = 10;

@@ -55,6 +55,19 @@ TEST_F(PhotoPositions, GeoFileReplacesTagsInAnyCoordinateSystem) {
   EXPECT_EQ(photos[2].tags.gps->latitude_deg, 47.1001);
 }
 
+TEST_F(PhotoPositions, GeoFilesOfZonesServeTheirPhotos) {
+  std::filesystem::create_directories(folder_ / "photos");
+  Write("monday/geo.txt", "EPSG:4326\na.jpg 8.41 47.11 401\n");
+  Write("tuesday/geo.txt", "EPSG:4326\na.jpg 8.42 47.12 402\n");
+  for (const char* zone : {"monday", "tuesday"}) std::filesystem::create_directory_symlink(folder_ / zone, folder_ / "photos" / zone);
+  std::vector<input::PhotoFile> photos = {Photo("monday/a.jpg"), Photo("tuesday/a.jpg"), Photo("wednesday/a.jpg")};
+  UsePositionFiles(folder_ / "photos", "", photos);
+  EXPECT_NEAR(photos[0].tags.gps->latitude_deg, 47.11, 1e-8);
+  EXPECT_NEAR(photos[1].tags.gps->latitude_deg, 47.12, 1e-8);
+  EXPECT_NEAR(photos[2].tags.gps->latitude_deg, 47.1001, 1e-8);
+  EXPECT_EQ(PositionFiles(folder_ / "photos", "").size(), 2U);
+}
+
 TEST_F(PhotoPositions, FaultsOfAGeoFileNameTheLine) {
   EXPECT_NE(GeoError("a.jpg 8 47 1\n").find("line 1: 'a.jpg 8 47 1' is not a coordinate system"), std::string::npos);
   EXPECT_NE(GeoError("EPSG:4326\na.jpg 8\n").find("line 2: has no x and y"), std::string::npos);

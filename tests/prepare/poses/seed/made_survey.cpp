@@ -34,7 +34,8 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
     const int strip = i / plan.per_strip, k = i % plan.per_strip;
     const bool back = strip % 2 == 1;
     const double x = plan.along_m * (back ? plan.per_strip - 1 - k : k);
-    const double centre_z = plan.height_m + random.Normal(), centre_y = plan.across_m * strip + (2 * strip < plan.strips ? 0.0 : plan.gap_m) + random.Normal(), centre_x = x + random.Normal();
+    const double centre_z = plan.height_m + random.Normal(),
+                 centre_y = plan.across_m * strip + (2 * strip < plan.strips ? 0.0 : plan.gap_m) + random.Normal(), centre_x = x + random.Normal();
     const Eigen::Vector3d centre(centre_x, centre_y, centre_z);
     const double roll = plan.tilt_noise_deg * random.Normal(), pitch = plan.pitch_deg + plan.tilt_noise_deg * random.Normal();
     const Eigen::Vector3d angles((back ? 270.0 : 90.0) + plan.tilt_noise_deg * random.Normal(), pitch, roll);
@@ -61,7 +62,8 @@ MadeSurvey MakeSurvey(const SurveyPlan& plan) {
   }
   // Enough points that every photo shows about as many as planned.
   const double width_m = 1600.0 / 1250.0 * plan.height_m, margin_m = 2.0 * width_m;
-  const double size_x = plan.along_m * (plan.per_strip - 1) + 2.0 * margin_m, size_y = plan.across_m * (plan.strips - 1) + plan.gap_m + 2.0 * margin_m;
+  const double size_x = plan.along_m * (plan.per_strip - 1) + 2.0 * margin_m,
+               size_y = plan.across_m * (plan.strips - 1) + plan.gap_m + 2.0 * margin_m;
   const auto n_points = static_cast<int>(plan.points_per_photo * size_x * size_y / (0.75 * width_m * width_m));
   std::vector<std::map<int, uint32_t>> feature_of(static_cast<size_t>(n));
   made.points.resize(feature_of.size());

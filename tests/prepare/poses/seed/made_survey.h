@@ -24,7 +24,7 @@ struct SurveyPlan {
   double tilt_noise_deg = 2.0;  // of the true poses
   int cameras = 1;
   bool gimbal_tags = true;
-  double reach_m = 75.0;  // photos nearer to each other are matched
+  double reach_m = 75.0;   // photos nearer to each other are matched
   int chance_matches = 0;  // with each photo beyond reach_m, from nowhere
   double gap_m = 0.0;      // more than across_m between the first half of the strips and the second
   uint64_t seed = 1;

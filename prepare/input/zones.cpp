@@ -31,7 +31,9 @@ std::vector<fs::path> Resolved(const std::vector<fs::path>& zones, const fs::pat
     }
     for (size_t k = 0; k < zones.size(); ++k) {
       if (i == k || !IsInside(resolved[i], resolved[k])) continue;
-      throw base::UsageError("the folder " + zones[i].string() + " is inside " + zones[k].string() + ": its photos would count twice");
+      const bool same = resolved[i] == resolved[k];
+      throw base::UsageError("the folder " + zones[i].string() + (same ? " is given twice" : " is inside " + zones[k].string()) +
+                             ": its photos would count twice");
     }
   }
   return resolved;

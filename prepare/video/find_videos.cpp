@@ -41,10 +41,12 @@ std::vector<fs::path> FindVideos(const std::vector<fs::path>& inputs) {
   if (inputs.size() == 1 && fs::is_directory(inputs.front())) return VideosOfFolder(inputs.front());
   std::vector<fs::path> videos;
   for (const fs::path& given : inputs) {
+    if (!fs::exists(given)) throw base::InputError(given, "no such folder or file", "Give folders that hold the photos, or video files");
+  }
+  for (const fs::path& given : inputs) {
     if (fs::is_directory(given)) {
-      throw base::UsageError("give one folder, or video files, not both: " + given.string() + " is a folder");
+      throw base::UsageError("give folders of photos, or video files, not both: " + given.string() + " is a folder");
     }
-    if (!fs::is_regular_file(given)) throw base::InputError(given, "no such folder or file", "Give the folder that holds the photos, or video files");
     if (!IsFilm(given)) throw base::InputError(given, "is no video", "Give the folder that holds the photos, or video files such as DJI_0001.MP4");
     videos.push_back(fs::absolute(given).lexically_normal());
   }

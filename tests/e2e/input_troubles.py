@@ -120,6 +120,21 @@ def test(skyquilt, folder):
     text = skyquilt.call("prepare", raw, "-o", folder / "raw_out_2", status=3)
     expect("IMG_1.HEIC" in text and "IMG_2.DNG" in text, f"damaged photos are not named:\n{text}")
 
+    # Two zones as one survey; zones that cannot be.
+    north, south = folder / "north", folder / "south"
+    for zone, half in ((north, 0), (south, 1)):
+        zone.mkdir()
+        for photo in sorted((folder / "clean" / "images").glob("IMG_*.jpg"))[half::2]:
+            shutil.copy(photo, zone / photo.name)
+    no_poses = ["--set", "prepare.colmap=no-such-program"]
+    skyquilt.call("prepare", north, south, "-o", folder / "zones_out", *no_poses, status=3, says=["2 zones: north, south", "no-such-program"])
+    with open(folder / "zones_out" / "survey" / "input.csv", newline="") as table:
+        names = [row["file"] for row in csv.DictReader(table) if row["taken"] == "yes"]
+    expect(len(names) == n and {name.split("/")[0] for name in names} == {"north", "south"}, f"other photos of two zones: {names}")
+    skyquilt.call("prepare", north, north, "-o", folder / "twice_out", status=2, says="given twice")
+    skyquilt.call("prepare", north, south, "-o", north / "out", status=2, says="project folder")
+    skyquilt.call("prepare", north, folder / "none", "-o", folder / "none_out", status=3, says="no such folder")
+
     # A table of positions as spreadsheets write them, with axes exchanged.
     lines = ["photo;lat;lon;height"]
     for photo in sorted((folder / "spoilt" / "images").glob("IMG_*.jpg")):

@@ -6,7 +6,9 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/geo/enu_frame.h"
 #include "core/survey/colmap_database.h"
+#include "core/survey/colmap_model.h"
 #include "tests/prepare/poses/fake_colmap.h"
 #include "tests/prepare/poses/made_photos.h"
 #include "tests/support/error_of.h"
@@ -206,6 +208,43 @@ TEST_F(FastWay, TriesMorePairsWhenPhotosAreMissing) {
   EXPECT_EQ(Calls(), "");
   const std::string arguments = base::ReadFile(folder_ / "arguments");
   EXPECT_NE(arguments.find("--SiftExtraction.max_num_features 8192"), std::string::npos) << arguments;
+}
+
+// Two parts of ten photos, 300 m apart, each in a frame of its own.
+TEST_F(FastWay, PartsThatTheMapperDoesNotConnectArePlacedByTheirTags) {
+  for (size_t i = 10; i < 20; ++i) photos_[i].tags.gps->latitude_deg += 300.0 / 111e3;
+  const geo::EnuFrame frame(*photos_[0].tags.gps);
+  for (uint32_t part = 0; part < 2; ++part) {
+    const geo::Similarity3d own{0.1 + part, Eigen::Quaterniond(Eigen::AngleAxisd(1.0 + part, Eigen::Vector3d::UnitX())), {1.0, 2.0, 3.0}};
+    survey::ColmapModel model;
+    survey::ColmapObservations observations;
+    model.cameras[1] = {camera::CameraModel::kPinhole, 64, 48, {60.0, 60.0, 32.0, 24.0}};
+    for (uint32_t i = 10 * part; i < 10 * part + 10; ++i) {
+      const geo::Rigid3d down = {Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0), {}};
+      const Eigen::Vector3d centre = frame.EnuFromGeodetic(*photos_[i].tags.gps);
+      const geo::Rigid3d pose{down.rotation, -(down.rotation * centre)};
+      model.images.push_back({i + 1, 1, photos_[i].name, geo::TransformCameraWorld(pose, own)});
+      for (int k = 0; k < 12 && i > 10 * part; ++k) {
+        survey::ColmapPoint point;
+        point.id = model.points.size() + 1;
+        point.x_in_world = own * Eigen::Vector3d(centre.x(), centre.y(), centre.z() - 100.0);
+        point.image_ids = {i, i + 1};
+        for (const uint32_t id : point.image_ids) observations[id].push_back({point.id, {32.0, 24.0}});
+        model.points.push_back(point);
+      }
+    }
+    survey::WriteColmapBinary(model, observations, folder_ / "models" / std::to_string(part));
+  }
+  const std::string joined = Find();
+  EXPECT_EQ(joined, (job_.folder / "sparse_joined").string());
+  EXPECT_EQ(Calls(), kFastCalls) << "more pairs were tried";
+  const survey::ColmapModel model = survey::ReadColmapModel(joined);
+  ASSERT_EQ(model.images.size(), 20U);
+  for (const survey::ColmapImage& image : model.images) {
+    EXPECT_LT((image.cam_from_world.OriginInSource() - frame.EnuFromGeodetic(*photos_[image.id - 1].tags.gps)).norm(), 0.5) << image.name;
+  }
+  EXPECT_EQ(Find(), joined);
+  EXPECT_EQ(Calls(), "");
 }
 
 TEST_F(FastWay, KeepsItsModelWhenMorePairsAreNoBetter) {

@@ -2,28 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
-#include "core/base/order_statistics.h"
 #include "core/survey/colmap_model.h"
 #include "core/survey/tagged_heights.h"
 #include "prepare/bundle/intrinsics_sigma.h"
-#include "prepare/bundle/resect.h"
+#include "prepare/check_survey.h"
 #include "prepare/control/fit/control_report.h"
-#include "prepare/georeference/checks/flight_checks.h"
 #include "prepare/georeference/checks/horizontal_lines.h"
-#include "prepare/georeference/checks/result_checks.h"
 #include "prepare/georeference/filter_sparse_points.h"
 #include "prepare/georeference/georeference.h"
 #include "prepare/georeference/place_by_control.h"
@@ -32,7 +25,7 @@
 #include "prepare/georeference/stated_up.h"
 #include "prepare/georeference/tags/photo_positions.h"
 #include "prepare/georeference/tags/unfilled_tags.h"
-#include "prepare/holdout.h"
+#include "prepare/held_out_photos.h"
 #include "prepare/holdout_poses.h"
 #include "prepare/input/input_folder.h"
 #include "prepare/input/input_table.h"
@@ -46,8 +39,6 @@
 #include "prepare/model_use.h"
 #include "prepare/models/read_model.h"
 #include "prepare/poses/colmap_run.h"
-#include "prepare/poses/focal_check.h"
-#include "prepare/poses/join_parts.h"
 #include "prepare/poses/shot_poses.h"
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
@@ -174,103 +165,6 @@ std::vector<survey::PhotoTags> PlacingTags(const std::vector<input::PreparedPhot
   return tags;
 }
 
-// Throws base::InputError for the first problem about the place.
-void RequirePlace(const survey::Survey& survey, const fs::path& folder) {
-  for (const survey::Problem& problem : survey.problems) {
-    if (!problem.about_place) continue;
-    throw base::InputError(survey.photo_root, problem.finding,
-                           problem.advice + " (residuals: " + (folder / "geo_residuals.csv").string() +
-                               "). To go on with a warning instead, leave out prepare.require_georeference and add --restart");
-  }
-}
-
-// Of the camera with most photos, by the photos alone. Unknown when the model's observations cannot be read: they serve the checks alone.
-bundle::LensAccuracy MeasureLens(const survey::ColmapModel& model, const fs::path& model_folder, const std::vector<input::PreparedPhoto>& photos,
-                                 const survey::Survey& survey) {
-  const auto main = std::find_if(survey.photos.begin(), survey.photos.end(),
-                                 [camera = georeference::MainCamera(survey)](const survey::Photo& photo) { return photo.camera == camera; });
-  if (main == survey.photos.end()) return {};
-  const uint32_t camera_id = model.images[photos[static_cast<size_t>(main - survey.photos.begin())].image].camera_id;
-  try {
-    return bundle::MeasureLensAccuracy(model, survey::ReadColmapObservations(model_folder), camera_id);
-  } catch (const base::InputError& error) {
-    base::LogInfo("the accuracy of the lens is not computed: {}", error.what());
-    return {};
-  }
-}
-
-// Needs the survey's photos, place and heights above ground.
-void CheckFlightOf(const std::vector<input::PreparedPhoto>& photos, const bundle::LensAccuracy& lens, survey::Survey& survey) {
-  survey.checks = georeference::CheckFlight(survey, photos);
-  survey.checks.k1_sigma = lens.k1_sigma;
-  base::LogInfo(georeference::DescribeChecks(survey.checks));
-  for (survey::Problem& problem : georeference::FlightProblems(survey.checks, survey)) survey.problems.push_back(std::move(problem));
-}
-
-// Focal lengths that the tags say, by the camera ids of the model.
-std::map<uint32_t, double> TaggedFocals(const std::vector<input::PreparedPhoto>& photos, const survey::ColmapModel& model) {
-  std::map<uint32_t, std::vector<double>> tagged_px;
-  for (const input::PreparedPhoto& photo : photos) {
-    const auto focal_px = poses::TaggedFocalPx(photo.file.tags, photo.file.width, photo.file.height);
-    if (focal_px) tagged_px[model.images[photo.image].camera_id].push_back(*focal_px);
-  }
-  std::map<uint32_t, double> median_px;
-  for (auto& [id, values] : tagged_px) median_px.emplace(id, base::Median(std::move(values)));
-  return median_px;
-}
-
-// Needs the survey's photos, place and heights above ground. `focal_sigma`: as in CheckedResult.
-void CheckAgainstTags(const std::vector<input::PreparedPhoto>& photos, const georeference::GimbalVerdict& gimbal, bool own_poses,
-                      const std::function<double()>& focal_sigma, survey::Survey& survey) {
-  georeference::CheckedResult result{.photos = {},
-                                     .georeferenced = survey.georeferenced,
-                                     .own_poses = own_poses,
-                                     .by_control = survey.control.placed,
-                                     .scale_percent = survey.fit.accuracy.scale_percent,
-                                     .focal_sigma = focal_sigma,
-                                     .gimbal = gimbal};
-  for (size_t i = 0; i < survey.photos.size(); ++i) {
-    const survey::Photo& photo = survey.photos[i];
-    const survey::PhotoTags& tags = photos[i].file.tags;
-    const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
-    result.photos.push_back({.cam_from_enu = photo.cam_from_enu.rotation,
-                             .camera = photo.camera,
-                             .focal_px = camera.FocalX(),
-                             .longer_side_px = static_cast<double>(std::max(camera.width, camera.height)),
-                             .agl_m = photo.agl_m,
-                             .tagged_focal_px = poses::TaggedFocalPx(tags, camera.width, camera.height),
-                             .relative_altitude_m = photo.relative_altitude_m,
-                             .gimbal_yaw_deg = tags.gimbal_yaw_deg,
-                             .gimbal_pitch_deg = tags.gimbal_pitch_deg,
-                             .gimbal_roll_deg = tags.gimbal_roll_deg});
-  }
-  georeference::ApplyChecks(georeference::CheckResult(result), survey);
-}
-
-void LogDirections(const survey::DominantDirections& directions) {
-  std::string text;
-  for (const survey::YawMode& mode : directions.modes) {
-    text += fmt::format("{}{:.1f} +- {:.1f} degrees ({:.0f} %)", text.empty() ? "" : ", ", mode.yaw_deg, mode.sigma_deg, 100.0 * mode.share);
-  }
-  base::LogInfo("{} straight lines in {} photos; directions of buildings and streets: {}", directions.lines, directions.photos,
-                text.empty() ? "none" : text);
-}
-
-// Parts of the survey stand beside each other as their tags say.
-void NoteParts(const survey::ColmapModel& model, survey::Survey& survey) {
-  const std::vector<std::vector<std::string>> parts = poses::PartsOf(model);
-  if (parts.size() < 2) return;
-  std::string names;
-  for (const std::vector<std::string>& part : parts) {
-    names += fmt::format("{}{} photos such as {}", names.empty() ? "" : ", ", part.size(), part.front());
-  }
-  survey.problems.push_back({"parts_by_tags",
-                             fmt::format("{} parts of the survey have no features in common ({}): their places and heights against each other are "
-                                         "as accurate as their tags",
-                                         parts.size(), names),
-                             "Take photos between the parts, or measure control points in each (--gcp)"});
-}
-
 // For a model without any.
 std::vector<survey::ColmapPoint> PointsFromPoses(const poses::ColmapJob& job, const survey::ColmapModel& model,
                                                  const std::vector<input::PreparedPhoto>& prepared, const poses::PoseOptions& options,
@@ -285,70 +179,6 @@ std::vector<survey::ColmapPoint> PointsFromPoses(const poses::ColmapJob& job, co
     poses.cameras.emplace(image.camera_id, model.cameras.at(image.camera_id));
   }
   return poses::TriangulatePoints(job, photos, poses, options, threads, ranks);
-}
-
-// Names of the held-out photos, those of photos with a pose. Chosen while all of these still have it, so that the same ones are held out whatever
-// prepare.holdout_poses does. `names`: of all photos.
-std::set<std::string> ChooseHeldOut(const PrepareOptions& options, const models::InputModel& model, const fs::path& model_path,
-                                    const std::vector<input::PreparedPhoto>& photos, const std::vector<std::string>& names) {
-  survey::Survey survey;
-  std::set<std::string> with_pose;
-  for (const input::PreparedPhoto& photo : photos) {
-    survey.photos.emplace_back().name = photo.file.name;
-    with_pose.insert(photo.file.name);
-  }
-  std::set_difference(names.begin(), names.end(), with_pose.begin(), with_pose.end(), std::back_inserter(survey.unregistered));
-  std::map<std::string, std::string> shot_of_photo;
-  for (const input::PreparedPhoto& photo : photos) {
-    if (photo.file.rig) shot_of_photo.emplace(photo.file.name, photo.file.rig->shot);
-  }
-  MarkHoldout(ParseHoldout(options.holdout), shot_of_photo, survey);
-  if (options.holdout == PrepareOptions().holdout) HoldOutByModel(model, model_path, survey);
-  std::set<std::string> held_out;
-  for (const survey::Photo& photo : survey.photos) {
-    if (photo.is_test) held_out.insert(photo.name);
-  }
-  return held_out;
-}
-
-// Takes the held-out photos out of the model. Nothing when their poses stay as the model has them; the log says why.
-std::optional<WithheldPhotos> Withhold(const std::set<std::string>& held_out, const std::vector<input::PreparedPhoto>& photos,
-                                       const fs::path& model_folder, bool has_observations, survey::ColmapModel& model, base::ThreadPool& threads) {
-  std::unordered_set<uint32_t> images;
-  for (const input::PreparedPhoto& photo : photos) {
-    if (held_out.contains(photo.file.name)) images.insert(model.images[photo.image].id);
-  }
-  std::optional<WithheldPhotos> withheld;
-  std::string reason = "the model has no observations of points in photos, or its poses are exact";
-  try {
-    if (has_observations) withheld = WithholdPhotos(images, survey::ReadColmapObservations(model_folder), model, threads, &reason);
-  } catch (const base::InputError& error) {
-    reason = error.what();
-  }
-  if (!withheld) base::LogWarning("held-out photos keep the poses of the model, in spite of prepare.holdout_poses: {}", reason);
-  return withheld;
-}
-
-// Puts withheld photos back into the model and the geo-reference. Returns all photos of the model in name order. Throws base::UsageError when none
-// of them can be placed.
-std::vector<input::PreparedPhoto> PutBack(const WithheldPhotos& withheld, const std::set<std::string>& held_out,
-                                          const input::FileOfImage& file_of_image, const std::vector<input::PhotoFile>& files,
-                                          survey::ColmapModel& model, georeference::Georeference& georeference) {
-  const std::vector<std::string> lost = ResectWithheld(withheld, model);
-  if (lost.size() == withheld.images.size()) {
-    throw base::UsageError(
-        fmt::format("prepare.holdout_poses = resected: none of the {} held-out photos ({}) sees enough points of the others to be placed by them. "
-                    "Set it to given, or "
-                    "hold out photos that overlap more with others (prepare.holdout), and add --restart",
-                    lost.size(), input::FewNames(lost)));
-  }
-  if (!lost.empty()) {
-    base::LogWarning("{} held-out photos get no pose, because they see fewer than {} points of the others: {}", lost.size(),
-                     bundle::kLeastObservations, input::FewNames(lost));
-  }
-  std::vector<input::PreparedPhoto> photos = input::PreparePhotos(model, file_of_image, files);
-  AddResected(photos, held_out, georeference);
-  return photos;
 }
 
 }  // namespace

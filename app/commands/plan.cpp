@@ -15,16 +15,43 @@
 #include "core/base/json_text.h"
 #include "core/base/system.h"
 #include "core/base/thread_pool.h"
+#include "prepare/input/zones.h"
 
 namespace skyquilt::app {
 namespace {
 
 struct PlanFlags {
-  std::string photos, model;
+  std::vector<std::string> photos;
+  std::string model;
   std::string out = ".";
   std::vector<std::string> within;
   int ranks = 1, machines = 1;
   bool json = false;
+};
+
+// The folder of the photos; of several ones a folder with links to them, which ends with this.
+class PhotosToPlan {
+ public:
+  PhotosToPlan(const std::vector<std::string>& photos, std::filesystem::path links) : links_(std::move(links)) {
+    for (const std::string& folder : photos) {
+      if (std::filesystem::is_directory(folder)) continue;
+      throw base::InputError(folder, "no such folder",
+                             "Give the folder that holds the photos; of videos, 'skyquilt prepare VIDEO -o DIR' makes photos in DIR/survey/frames");
+    }
+    const std::vector<std::filesystem::path> zones = ZonesAmong(photos);
+    folder_ = zones.empty() ? std::filesystem::path(photos.front()) : prepare::input::LinkZones(zones, links_);
+  }
+  ~PhotosToPlan() {
+    std::error_code ignored;
+    std::filesystem::remove_all(links_, ignored);
+  }
+  PhotosToPlan(const PhotosToPlan&) = delete;
+  PhotosToPlan& operator=(const PhotosToPlan&) = delete;
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path links_, folder_;
 };
 
 // The totals that were asked for, or usual ones.
@@ -66,18 +93,16 @@ void PrintPlans(const PlanFlags& flags, const coordinator::WorkSize& size, const
 
 void ShowPlans(const CommandState& state, const PlanFlags& flags, const std::vector<config::Override>& overrides) {
   const coordinator::Settings settings = state.Load({}, overrides);
-  if (!std::filesystem::is_directory(flags.photos)) {
-    throw base::InputError(flags.photos, "no such folder",
-                           "Give the folder that holds the photos; of videos, 'skyquilt prepare VIDEO -o DIR' makes photos in DIR/survey/frames");
-  }
+  const std::string trial = "skyquilt_plan_" + fmt::format("{:016x}", std::hash<std::string>{}(base::UtcTimestamp() + flags.photos.front()));
+  const std::filesystem::path temporary = std::filesystem::temp_directory_path();
+  const PhotosToPlan photos(flags.photos, temporary / (trial + "_zones"));
   if (flags.machines > flags.ranks) throw base::UsageError("--machines is more than --ranks: every machine needs a rank");
   base::ThreadPool threads(settings.run.threads);
-  coordinator::WorkSize size = coordinator::CountPhotos(flags.photos, flags.model, settings, {}, threads);
+  coordinator::WorkSize size = coordinator::CountPhotos(photos.folder(), flags.model, settings, {}, threads);
   size.ranks = flags.ranks;
   size.machines = flags.machines;
-  const std::string trial = "skyquilt_plan_" + fmt::format("{:016x}", std::hash<std::string>{}(base::UtcTimestamp() + flags.photos));
-  const coordinator::Rates rates = coordinator::MeasureRates(
-      size, settings, {.photos = flags.photos, .model = flags.model, .work_folder = std::filesystem::temp_directory_path() / trial}, threads);
+  const coordinator::Rates rates =
+      coordinator::MeasureRates(size, settings, {.photos = photos.folder(), .model = flags.model, .work_folder = temporary / trial}, threads);
   const coordinator::Predictor predictor(size, rates);
   const coordinator::Needs needs = coordinator::NeedsOf(size, settings);
   const coordinator::Room room = coordinator::RoomFor(flags.out, settings);
@@ -94,7 +119,7 @@ void AddPlan(CLI::App& app, CommandState& state) {
   const auto flags = std::make_shared<PlanFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
   CLI::App* command = app.add_subcommand("plan", "say in seconds what a run of photos would take: time of each stage, memory, disk");
-  command->add_option("photos", flags->photos, "folder with photos, or a simulated survey")->required()->type_name("FOLDER");
+  command->add_option("photos", flags->photos, "folder with photos, several of them, or a simulated survey")->required()->type_name("FOLDER...");
   command->add_option("-o,--out", flags->out, "project folder that the run would have, for its free disk; default: this folder")->type_name("FOLDER");
   command->add_option("--within", flags->within, "total times to plan for, such as 5min,20min,1h; default: three that suit the photos")
       ->delimiter(',')

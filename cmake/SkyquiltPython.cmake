@@ -35,10 +35,11 @@ endif()
 if(SKYQUILT_HAS_PYTHON)
   message(STATUS "Python module: for ${Python_EXECUTABLE}, ${Python_VERSION}")
   # clang's code for position-independent programs, Debian's default, fits into a shared library that hides its symbols, as the module does: then the
-  # libraries are the same with and without the module. g++'s reaches data of other libraries directly, which does not fit.
+  # libraries are the same with and without the module. g++'s reaches data of other libraries directly, which does not fit, nor does clang's with a
+  # sanitizer.
   include(CheckCXXSourceCompiles)
   check_cxx_source_compiles("#ifndef __PIE__\n#error not position-independent\n#endif\nint main() {}" SKYQUILT_PIE_BY_DEFAULT)
-  if(NOT (CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND SKYQUILT_PIE_BY_DEFAULT))
+  if(SKYQUILT_SANITIZE OR NOT (CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND SKYQUILT_PIE_BY_DEFAULT))
     set(CMAKE_POSITION_INDEPENDENT_CODE ON)
   endif()
 elseif(SKYQUILT_PYTHON STREQUAL "ON")

@@ -1,7 +1,6 @@
 #include "prepare/poses/join_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -136,24 +135,6 @@ geo::Similarity3d FitFree(const std::vector<TaggedPose>& poses, const std::vecto
   return {scale, Eigen::Quaterniond(Eigen::Matrix3d(turn / scale)), map.topRightCorner<3, 1>()};
 }
 
-// The smaller and the larger standard deviation of the places in the plane.
-std::array<double, 2> SpreadOf(const std::vector<TaggedPose>& poses, const std::vector<char>& used) {
-  std::vector<Eigen::Vector2d> places;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (size_t i = 0; i < poses.size(); ++i) {
-    if (used[i] == 0) continue;
-    places.emplace_back(poses[i].place.head<2>());
-    mean += places.back();
-  }
-  const auto n = static_cast<double>(places.size());
-  mean /= n;
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  for (const Eigen::Vector2d& place : places) spread += (place - mean) * (place - mean).transpose() / n;
-  const double half_trace = 0.5 * spread.trace();
-  const double root = std::sqrt(std::max(half_trace * half_trace - spread.determinant(), 0.0));
-  return {std::sqrt(std::max(half_trace - root, 0.0)), std::sqrt(half_trace + root)};
-}
-
 void Transform(const geo::Similarity3d& map, survey::ColmapModel& model) {
   for (survey::ColmapImage& image : model.images) image.cam_from_world = geo::TransformCameraWorld(image.cam_from_world, map);
   for (survey::ColmapPoint& point : model.points) point.x_in_world = map * point.x_in_world;
@@ -242,8 +223,12 @@ std::optional<TaggedPlace> PlaceByTags(const survey::ColmapModel& model, const s
   if (n_used < kLeastOfPart || n_used < kLeastAgreeing * static_cast<double>(poses.size())) return std::nullopt;
   // Positions far more apart than they are wrong, and without angles in two directions.
   constexpr double kLeastTimes = 3.0;
-  const auto [smaller, larger] = SpreadOf(poses, used);
-  if ((level ? larger : smaller) < kLeastTimes * median_m) return std::nullopt;
+  std::vector<Eigen::Vector2d> places;
+  for (size_t i = 0; i < poses.size(); ++i) {
+    if (used[i] != 0) places.emplace_back(poses[i].place.head<2>());
+  }
+  const Spread spread = SpreadOf(places);
+  if ((level ? spread.larger : spread.smaller) < kLeastTimes * median_m) return std::nullopt;
   place.median_m = median_m;
   return place;
 }

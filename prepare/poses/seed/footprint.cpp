@@ -1,5 +1,8 @@
 #include "prepare/poses/seed/footprint.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace skyquilt::prepare::poses {
 
 bool Footprint::IsLike(const Footprint& other) const {
@@ -18,6 +21,18 @@ Footprint FootprintOf(const camera::Camera& camera, const Eigen::Quaterniond& ca
   constexpr double kLeastDown = 0.3;
   const Eigen::Vector2d ahead = axis.z() < -kLeastDown ? Eigen::Vector2d(axis.head<2>() * (height_m / -axis.z())) : Eigen::Vector2d::Zero();
   return {centre.head<2>() + ahead, height_m * (camera.width + camera.height) / (4.0 * camera.FocalX()), axis};
+}
+
+Spread SpreadOf(const std::vector<Eigen::Vector2d>& places) {
+  const auto n = static_cast<double>(places.size());
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& place : places) mean += place;
+  mean /= n;
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& place : places) covariance += (place - mean) * (place - mean).transpose() / n;
+  const double half_trace = 0.5 * covariance.trace();
+  const double root = std::sqrt(std::max(half_trace * half_trace - covariance.determinant(), 0.0));
+  return {std::sqrt(std::max(half_trace - root, 0.0)), std::sqrt(half_trace + root)};
 }
 
 }  // namespace skyquilt::prepare::poses

@@ -1,8 +1,9 @@
-// What a photo shows of level ground, roughly.
+// What a photo shows of level ground, roughly, and how photos spread over it.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "core/camera/camera.h"
 
@@ -23,5 +24,11 @@ struct Footprint {
 
 // `height_m`: of the camera above ground.
 Footprint FootprintOf(const camera::Camera& camera, const Eigen::Quaterniond& cam_from_enu, const Eigen::Vector3d& centre, double height_m);
+
+// Standard deviations of places in the plane, in the two directions in which they are least and most. Not of none.
+struct Spread {
+  double smaller = 0.0, larger = 0.0;
+};
+Spread SpreadOf(const std::vector<Eigen::Vector2d>& places);
 
 }  // namespace skyquilt::prepare::poses

@@ -89,14 +89,8 @@ bool IsHeldByTags(const bundle::BundleProblem& bundle, const std::vector<uint32_
   }
   if (places.size() < kLeastOfPart) return false;
   if (n_angles >= kLeastOfPart) return true;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& place : places) mean += place / static_cast<double>(places.size());
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-  for (const Eigen::Vector2d& place : places) spread += (place - mean) * (place - mean).transpose() / static_cast<double>(places.size());
   constexpr double kLeastWidth = 0.1;  // of the height, one standard deviation
-  const double half_trace = 0.5 * spread.trace();
-  const double smaller = half_trace - std::sqrt(std::max(half_trace * half_trace - spread.determinant(), 0.0));
-  return smaller > std::pow(kLeastWidth * height_m, 2);
+  return SpreadOf(places).smaller > kLeastWidth * height_m;
 }
 
 bool AreApart(const bundle::BundleProblem& bundle, const std::vector<uint32_t>& one, const std::vector<uint32_t>& other, double height_m) {

@@ -6,10 +6,10 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 set(CMAKE_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
 # The library paths of the build are for the build only; an installed program asks the system.
-set_target_properties(skyquilt PROPERTIES INSTALL_RPATH "" INSTALL_RPATH_USE_LINK_PATH OFF)
+set_target_properties(skyquilt skyquilt_bench PROPERTIES INSTALL_RPATH "" INSTALL_RPATH_USE_LINK_PATH OFF)
 configure_file(packaging/skyquilt.1.in packaging/skyquilt.1 @ONLY)
 
-install(TARGETS skyquilt)
+install(TARGETS skyquilt skyquilt_bench)
 install(PROGRAMS scripts/skyquilt-mpirun DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES ${PROJECT_BINARY_DIR}/packaging/skyquilt.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 # What NodeODM takes for OpenDroneMap's folder (docs/odm.md).

@@ -1,4 +1,4 @@
-// Input of an evaluation. The pointers must outlive it; all but `training` must be set.
+// Input of an evaluation. The pointers must outlive it; all but `trust`, `training` and `times` must be set.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,7 @@
 #include "core/scene/scene.h"
 #include "core/scene/train_report.h"
 #include "core/survey/survey.h"
+#include "core/trust/trust.h"
 #include "evaluate/evaluate_options.h"
 #include "evaluate/metrics/run_times.h"
 #include "partition/block.h"
@@ -20,6 +21,7 @@ struct EvaluateInput {
   const partition::BlockSet* blocks = nullptr;
   const image::PixelCache* pixels = nullptr;          // entry i belongs to survey->photos[i]
   std::filesystem::path project_folder;               // report/ is written here; checkpoints/ and products/ are read
+  const skyquilt::trust::Trust* trust = nullptr;      // of the scene; null: not measured
   const scene::TrainReport* training = nullptr;       // null: unknown, then the report says nothing about training
   std::string config_text;                            // TOML; empty: the configuration stored in the scene
   geo::Vertical vertical = geo::Vertical::kAsTagged;  // of the heights in the project's files, which the report repeats

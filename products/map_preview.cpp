@@ -12,6 +12,7 @@
 #include "core/base/order_statistics.h"
 #include "core/gis/geotiff.h"
 #include "core/survey/geo_fit.h"
+#include "core/trust/trust.h"
 #include "products/place_metadata.h"
 
 namespace skyquilt::products {
@@ -75,7 +76,7 @@ image::Image8 OrthophotoPreview(const gis::ReducedRaster& raster, const CellLook
   return preview;
 }
 
-// Height interpolated between the four nearest pixels, because the relief would show the pixel grid otherwise. NaN where the nearest is NaN.
+// Value interpolated between the four nearest pixels, because the relief would show the pixel grid otherwise. NaN where the nearest is NaN.
 float SmoothSample(const gis::ReducedRaster& raster, const Eigen::Vector2d& cell) {
   const float* nearest = Sample(raster, cell);
   if (nearest == nullptr) return std::numeric_limits<float>::quiet_NaN();
@@ -92,7 +93,7 @@ float SmoothSample(const gis::ReducedRaster& raster, const Eigen::Vector2d& cell
   return std::isfinite(*nearest) && std::isfinite(smooth) ? smooth : *nearest;
 }
 
-image::ImageF HeightPreview(const gis::ReducedRaster& raster, const CellLookup& lookup, int width, int height) {
+image::ImageF SmoothPreview(const gis::ReducedRaster& raster, const CellLookup& lookup, int width, int height) {
   image::ImageF preview(width, height, 1);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) *preview.At(x, y) = SmoothSample(raster, lookup.At(x, y));
@@ -160,6 +161,17 @@ void WriteOrthophotoPicture(const scene::SceneInfo& info, const gis::MapGrid& gr
   base::WriteFileAtomically(png, image::EncodePng(picture, kPngLevel));
 }
 
+void WriteTrustPicture(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& trust_map,
+                       const std::filesystem::path& png, int max_width) {
+  const auto [width, height] = PictureSize(info, grid, max_width);
+  const image::ImageF error = SmoothPreview(gis::ReadReduced(trust_map, max_width), CellLookup(info, grid, width, height), width, height);
+  image::Image8 picture = image::Colorize(error, 0.0F, trust::kTopError);
+  for (size_t i = 0; i < error.data.size(); ++i) {
+    if (!std::isfinite(error.data[i])) std::fill_n(picture.data.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, uint8_t{255});
+  }
+  base::WriteFileAtomically(png, image::EncodePng(picture, kPngLevel));
+}
+
 void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& file, const std::string& preview) {
   nlohmann::ordered_json bounds = {{"min_enu", {info.min_enu.x(), info.min_enu.y()}},
                                    {"max_enu", {info.max_enu.x(), info.max_enu.y()}},
@@ -178,7 +190,7 @@ void WriteMapPreviews(const scene::SceneInfo& info, const gis::MapGrid& ortho_gr
     const auto [width, height] = PictureSize(info, dsm_grid, preview_width);
     const CellLookup lookup(info, dsm_grid, width, height);
     const double pixel_m = (info.max_enu.x() - info.min_enu.x()) / width;
-    image::SavePng(ShadedRelief(HeightPreview(gis::ReadReduced(dsm, preview_width), lookup, width, height), pixel_m), folder / "dsm.png");
+    image::SavePng(ShadedRelief(SmoothPreview(gis::ReadReduced(dsm, preview_width), lookup, width, height), pixel_m), folder / "dsm.png");
   }
   WriteMapBounds(info, ortho_grid, folder / "orthophoto.json");
 }

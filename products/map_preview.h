@@ -18,6 +18,9 @@ image::Image8 ShadedRelief(const image::ImageF& height_m, double cell_m);
 // transparent. Throws base::InputError.
 void WriteOrthophotoPicture(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& orthophoto,
                             const std::filesystem::path& png, int max_width);
+// Reads the first band of a trust map (products/trust_map.h) and writes it as PNG in colours, white where it has no data.
+void WriteTrustPicture(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& trust_map,
+                       const std::filesystem::path& png, int max_width);
 // Writes orthophoto.json (products/map_products.h); preview: what a preview was made from, empty for the orthophoto itself. Throws base::InputError.
 void WriteMapBounds(const scene::SceneInfo& info, const gis::MapGrid& grid, const std::filesystem::path& file, const std::string& preview = "");
 

@@ -6,15 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "core/base/cancel.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
-#include "core/base/progress.h"
 #include "core/gis/geotiff.h"
 #include "core/scene/map_heights.h"
-#include "products/cell_painter.h"
 #include "products/height_shift.h"
 #include "products/map_area.h"
+#include "products/map_cells.h"
 #include "products/map_preview.h"
 #include "products/place_metadata.h"
 #include "products/preview_files.h"
@@ -22,7 +20,7 @@
 namespace skyquilt::products {
 namespace {
 
-constexpr float kNoHeight = -9999.0F;
+constexpr double kFinerThanScene = 0.8;  // cells up to this share of the scene's detail are not all rendered
 
 gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const scene::MapHeights& heights, const gis::MapGrid& grid) {
   gis::GeoTiffSpec spec;
@@ -40,42 +38,10 @@ gis::GeoTiffSpec DsmSpec(const scene::SceneInfo& info, const scene::MapHeights& 
   return spec;
 }
 
-struct MapCaster {
-  const RayCaster& caster;
-  size_t rays_per_call;
-};
-
-// One ray per cell of the products' grid, whose number they get. write_rows(first_row, n_rows, cells) gets the rows in order and may change them.
-template <typename WriteRows>
-void RenderCells(const scene::SceneInfo& info, const MapCaster& casting, const std::optional<gis::Boundary>& boundary, double min_opacity,
-                 const char* what, MapProducts* products, const WriteRows& write_rows) {
-  const gis::MapGrid& grid = products->grid;
-  const MapRayGenerator generator(info, grid);
-  base::Progress progress(what, static_cast<double>(grid.width) * grid.height, "cells");
-  PaintedCells band;  // consecutive rows of both maps, written together
-  MapRays row_rays;
-  CellPainter painter(casting.caster, min_opacity, casting.rays_per_call);
-  for (int first_row = 0; first_row < grid.height; first_row += gis::GeoTiffWriter::kTile) {
-    base::ThrowIfCancelled();
-    const int n_rows = std::min(gis::GeoTiffWriter::kTile, grid.height - first_row);
-    const size_t cells = grid.Index(0, n_rows);
-    band.rgba.assign(4 * cells, 0);
-    band.place.assign(cells, kNoHeight);
-    for (int row = 0; row < n_rows; ++row) {
-      generator.MakeRow(first_row + row, &row_rays);
-      for (size_t i = 0; i < row_rays.rays.size(); ++i) {
-        if (boundary && !boundary->Contains(grid.CellCentre(row_rays.column[i], first_row + row))) continue;
-        ++products->rays;
-        painter.Add(row_rays.rays[i], grid.Index(row_rays.column[i], row), row_rays.start_height_m[i], &band);
-      }
-      progress.Update(static_cast<double>(first_row + row) * grid.width);
-    }
-    painter.Finish(&band);
-    write_rows(first_row, n_rows, band);
-  }
-  progress.Update(static_cast<double>(grid.width) * grid.height);
-  progress.Finish();
-  products->filled = products->rays > 0 ? static_cast<double>(painter.painted()) / static_cast<double>(products->rays) : 0.0;
+// How well the cells of the products' grid are filled.
+void Count(const RenderedCells& counts, MapProducts* products) {
+  products->rays = counts.rays;
+  products->filled = counts.inside > 0 ? static_cast<double>(counts.filled) / static_cast<double>(counts.inside) : 0.0;
 }
 
 // Heights of rows as the surface model has them.
@@ -99,17 +65,17 @@ class DsmWriter {
 };
 
 // Both maps as the scene shows them, some rows in memory at a time.
-void RenderToFiles(const scene::SceneInfo& info, const MapCaster& casting, const std::optional<gis::Boundary>& boundary,
+void RenderToFiles(const scene::SceneInfo& info, const MapCasting& casting, const std::optional<gis::Boundary>& boundary,
                    const ProductOptions& options, MapProducts* products) {
   std::optional<gis::GeoTiffWriter> ortho;
   std::optional<DsmWriter> dsm;
   if (options.ortho) ortho.emplace(products->orthophoto, OrthophotoSpec(info, products->grid, "Orthophoto"));
   if (options.dsm) dsm.emplace(info, products->grid, options, products->dsm);
-  RenderCells(info, casting, boundary, options.min_opacity, options.ortho ? "orthophoto" : "surface model", products,
-              [&](int first_row, int n_rows, PaintedCells& band) {
-                if (ortho) ortho->WriteRows(first_row, n_rows, std::span<const uint8_t>(band.rgba));
-                if (dsm) dsm->WriteRows(first_row, n_rows, &band.place);
-              });
+  const MapRowSink write = [&](int first_row, int n_rows, PaintedCells& band) {
+    if (ortho) ortho->WriteRows(first_row, n_rows, std::span<const uint8_t>(band.rgba));
+    if (dsm) dsm->WriteRows(first_row, n_rows, &band.place);
+  };
+  Count(RenderMapCells(info, products->grid, casting, boundary, options.ortho ? "orthophoto" : "surface model", write), products);
   if (ortho) ortho->Close();
   if (dsm) dsm->Close();
 }
@@ -176,17 +142,18 @@ void WriteFieldDsm(const scene::SceneInfo& info, const FieldMap& field, const gi
 
 // The scene as it is seen straight down is the surface that the photos are laid on, so it is kept in memory. The surface model has cells of
 // dsm_grid, those of the other maps of heights.
-void PaintFromPhotos(const scene::SceneInfo& info, const MapCaster& casting, const std::optional<gis::Boundary>& boundary,
-                     const gis::MapGrid& dsm_grid, const ProductOptions& options, const MapPhotos& photos, const std::filesystem::path& folder,
-                     MapProducts* products) {
+void PaintFromPhotos(const scene::SceneInfo& info, MapCasting casting, const std::optional<gis::Boundary>& boundary, const gis::MapGrid& dsm_grid,
+                     const ProductOptions& options, const MapPhotos& photos, const std::filesystem::path& folder, MapProducts* products) {
   const gis::MapGrid& grid = products->grid;
   FieldMap field{grid, std::vector<uint8_t>(4 * grid.size()), std::vector<float>(grid.size())};
-  RenderCells(info, casting, boundary, options.min_opacity, "surface model", products, [&](int first_row, int /*n_rows*/, PaintedCells& band) {
+  const MapRowSink keep = [&](int first_row, int /*n_rows*/, PaintedCells& band) {
     const auto begin = static_cast<std::ptrdiff_t>(grid.Index(0, first_row));
     std::copy(band.rgba.begin(), band.rgba.end(), field.rgba.begin() + 4 * begin);
     std::transform(band.place.begin(), band.place.end(), field.height_m.begin() + begin,
                    [](float height_m) { return height_m == kNoHeight ? std::numeric_limits<float>::quiet_NaN() : height_m; });
-  });
+  };
+  casting.every_second = grid.resolution_m <= kFinerThanScene * info.gsd_m;
+  Count(RenderMapCells(info, grid, casting, boundary, "surface model", keep), products);
   products->painted = WritePhotoOrthophoto(info, photos, field, options, boundary, folder);
   if (!products->painted) WriteFieldOrthophoto(info, field, products->orthophoto);
   if (!options.dsm) return;
@@ -215,7 +182,7 @@ void LogMaps(const MapProducts& made, const std::filesystem::path& folder) {
 
 MapProducts MakeMapProducts(const scene::SceneInfo& info, const RayCaster& caster, const ProductOptions& options, const std::filesystem::path& folder,
                             const MapPhotos* photos, size_t rays_per_call) {
-  const MapCaster casting{caster, rays_per_call};
+  const MapCasting casting{caster, rays_per_call, options.min_opacity};
   MapProducts products;
   const bool from_photos = options.ortho && photos != nullptr && options.ortho_source == "photos";
   products.grid = from_photos ? PlanPhotoSurfaceGrid(info, options) : PlanMapGrid(info, options);

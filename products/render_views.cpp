@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/amounts.h"
 #include "core/base/cancel.h"
@@ -11,6 +12,7 @@
 #include "core/base/progress.h"
 #include "core/image/normal_image.h"
 #include "core/image/video_writer.h"
+#include "core/scene/camera_rays.h"
 
 namespace skyquilt::products {
 namespace {
@@ -24,6 +26,17 @@ std::vector<render::RayColor> Render(const ViewRenderer& renderer, const View& v
   stats->rays += static_cast<int64_t>(colors.size());
   ++stats->views;
   return colors;
+}
+
+image::ImageF ErrorsToExpect(const ViewImages& images, const View& view, const std::vector<render::RayColor>& colors, base::ThreadPool& threads) {
+  const scene::CameraRays camera(view.camera, view.cam_from_enu, images.cones);
+  const auto width = static_cast<size_t>(view.camera.width);
+  const trust::RowRays rays = [&](int row, std::span<render::Ray> of_row) {
+    std::vector<size_t> pixels(width);
+    std::iota(pixels.begin(), pixels.end(), static_cast<size_t>(row) * width);
+    camera.Make(pixels, of_row);
+  };
+  return trust::TrustOf(*images.trust, view.camera.width, view.camera.height, colors, rays, threads).error;
 }
 
 std::string RateText(const RenderStats& stats) {
@@ -61,6 +74,11 @@ RenderStats RenderViews(const ViewRenderer& renderer, const std::vector<View>& v
     image::SavePng(ColorImage(colors, view.camera.width, view.camera.height), folder / (view.name + ".png"));
     if (images.depth) image::SaveFloatTiff(DepthImage(colors, view.camera.width, view.camera.height), folder / (view.name + "_depth.tiff"));
     if (images.normals) image::SaveNormals(NormalsOfView(*images.normals, view, colors, threads), folder / (view.name + "_normals.png"));
+    if (images.trust != nullptr) {
+      const image::ImageF error = ErrorsToExpect(images, view, colors, threads);
+      image::SaveFloatTiff(error, folder / (view.name + "_trust.tiff"));
+      image::SavePng(image::Colorize(error, 0.0F, trust::kTopError), folder / (view.name + "_trust.png"));
+    }
     progress.Advance(1.0, RateText(stats));
   }
   progress.Finish(RateText(stats));

@@ -8,6 +8,7 @@
 
 #include "core/base/thread_pool.h"
 #include "core/image/image.h"
+#include "core/trust/trust.h"
 #include "products/normal_pictures.h"
 #include "products/ray_caster.h"
 
@@ -24,11 +25,13 @@ struct RenderStats {
 struct ViewImages {
   bool depth = true;
   std::optional<NormalKind> normals;
+  const trust::Trust* trust = nullptr;  // null: no errors to expect
+  bool cones = false;                   // of the scene (scene::Scales::Cones), for `trust`
 };
 
 // Writes <folder>/<name>.png (colours on black) and, if chosen, <folder>/<name>_depth.tiff: float, metres along the ray (not along the optical axis)
-// to where the transmittance falls below one half, NaN where it never does; and <folder>/<name>_normals.png (core/image/normal_image.h). The folder
-// is created; existing files are replaced. Throws base::InputError when a file cannot be written, and base::Interrupted between views.
+// to where the transmittance falls below one half, NaN where it never does; <folder>/<name>_normals.png (core/image/normal_image.h); and <folder>/<name>_trust.tiff
+// and _trust.png: the error to expect (trust::TrustPicture), as numbers and as colours up to trust::kTopError. The folder is created; existing files are replaced. Throws base::InputError when a file cannot be written, and base::Interrupted between views.
 RenderStats RenderViews(const ViewRenderer& renderer, const std::vector<View>& views, const std::filesystem::path& folder, const ViewImages& images,
                         base::ThreadPool& threads);
 

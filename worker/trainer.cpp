@@ -101,6 +101,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   brightness::ResponseLearner learner(response, job.learn);
   const ContextBrightness extras{&response, &learner};
   RaySource source(*job.survey, *job.pixels, response);
+  source.SetLeftOut(job.left_out);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
   const PointRanges ranges(*job.survey, source, area.photos, threads);
   ranges.GiveSky(source, threads);
@@ -168,6 +169,7 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
   render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false, prior_options);
   RaySource source(*job.survey, *job.pixels, loaded.response);
   source.SetRejected(job.rejected);
+  source.SetLeftOut(job.left_out);
   const scene::HeightMap surface = SurfaceOfPoints(*job.survey);
   const PointRanges ranges(*job.survey, source, block.photos, threads);
   ranges.GiveSky(source, threads);

@@ -70,6 +70,7 @@ struct TrainJob {
   brightness::Luminance luminance;           // for the context; blocks use the one stored with it
   TrainOptions options;                      // with the budget of this field
   PriorOptions priors;                       // of blocks; the context has none
+  trust::LeftOutTiles left_out;              // that nothing is learned from
   const RejectedPixels* rejected = nullptr;  // that blocks do not learn from; null: none
   int min_views = 2;                         // number of training photos that must see a place for the field to learn it
   int attempt = 0;                           // 0, then one more for every retry

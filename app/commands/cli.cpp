@@ -1,5 +1,7 @@
 #include "app/commands/cli.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -7,6 +9,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "app/commands/command.h"
@@ -68,7 +71,7 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
   return kUsage;
 }
 
-void AddCommands(CLI::App& app, CommandState& state) {
+void AddCommands(CLI::App& app, CommandState& state, AddBenchCommand add_bench) {
   app.add_option("--config", state.config, "TOML file with options, or a preset: fast, default, quality, level (see configs/)")
       ->type_name("FILE|NAME");
   app.add_option("--set", state.set, "set one option, for instance train.levels=10; may be repeated")
@@ -102,7 +105,39 @@ void AddCommands(CLI::App& app, CommandState& state) {
   AddEvaluate(app, state);
   AddView(app, state);
   AddInfo(app, state);
-  AddBench(app, state);
+  add_bench(app, state);
+}
+
+constexpr const char* kBenchProgram = "skyquilt-bench";
+
+std::filesystem::path BenchProgram() {
+  std::error_code ignored;
+  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / kBenchProgram;
+}
+
+// The first word that is neither an option nor the value of one.
+std::string_view CommandOf(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--config" || word == "--set" || word == "--threads") {
+      ++i;
+    } else if (!word.starts_with("-")) {
+      return word;
+    }
+  }
+  return {};
+}
+
+// Replaces this process by the other program. Throws base::InputError when there is none.
+[[noreturn]] void BecomeBench(char** argv) {
+  execv(BenchProgram().c_str(), argv);
+  throw base::InputError(BenchProgram(), "cannot be started: the benchmarks are a program of their own",
+                         "Build it in the source folder: cmake --build --preset release --target skyquilt_bench");
+}
+
+// So that the program that does not have the command lists it.
+void NameBench(CLI::App& app, CommandState& /*state*/) {
+  app.add_subcommand("bench", "measure speed and accuracy");
 }
 
 // How many words the parser sees: all, but of 'skyquilt odm' only those up to "odm", because the others are OpenDroneMap's.
@@ -148,9 +183,11 @@ int Guarded(const std::function<void()>& body) {
   }
 }
 
-int RunCommandLine(int argc, char** argv) {
-  base::ReleaseAffinity();
+int RunCommandLine(int argc, char** argv, AddBenchCommand add_bench) {
   base::InitLog(false);
+  // Before this process is one of several ranks.
+  if (add_bench == nullptr && CommandOf(argc, argv) == "bench") return Guarded([argv] { BecomeBench(argv); });
+  base::ReleaseAffinity();
   base::InstallSignalHandlers();
   std::unique_ptr<comm::Communicator> comm;
   if (const int status = Guarded([&comm] { comm = comm::Connect(); }); status != kDone) return status;
@@ -165,7 +202,7 @@ int RunCommandLine(int argc, char** argv) {
   state.command_line = "skyquilt";
   for (int i = 1; i < argc; ++i) state.command_line += std::string(" ") + argv[i];
   CLI::App app{"Skyquilt turns a survey of drone photos into a geo-referenced radiance field, block by block, on CPUs.", "skyquilt"};
-  AddCommands(app, state);
+  AddCommands(app, state, add_bench != nullptr ? add_bench : NameBench);
   const int n_parsed = ParsedWords(argc, argv);
   state.rest.assign(argv + n_parsed, argv + argc);
   int parse_status = kDone;

@@ -103,9 +103,6 @@ void AddOdm(CLI::App& app, CommandState& state);
 void AddEvaluate(CLI::App& app, CommandState& state);
 void AddView(CLI::App& app, CommandState& state);
 void AddInfo(CLI::App& app, CommandState& state);
-void AddBench(CLI::App& app, CommandState& state);
-// The subcommands of `bench` that train whole surveys.
-void AddStudyBenches(CLI::App& bench, CommandState& state);
 void AddRun(CLI::App& app, CommandState& state);
 void AddPlan(CLI::App& app, CommandState& state);
 

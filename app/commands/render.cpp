@@ -12,6 +12,7 @@
 #include "products/elevation.h"
 #include "products/map_products.h"
 #include "products/render_views.h"
+#include "products/trust_map.h"
 
 namespace skyquilt::app {
 namespace {
@@ -29,11 +30,13 @@ struct RenderFlags {
   std::string plane;  // of elevations: auto or the numbers of one; empty: none
   bool no_depth = false;
   std::string normals;  // kind; empty: none
+  bool trust = false;
   bool restart = false;
 
   bool Views() const { return !photos.empty() || test || (!path.empty() && !video); }
   bool Anything() const { return !photos.empty() || test || !path.empty() || video || Maps(); }
-  bool Maps() const { return ortho || dsm || !plane.empty(); }
+  bool Maps() const { return ortho || dsm || !plane.empty() || TrustMap(); }
+  bool TrustMap() const { return trust && (!Views() || ortho || dsm); }
 };
 
 // The scene to render, and its project if it is inside one.
@@ -65,6 +68,12 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
   images.depth = !flags.no_depth;
   if (!flags.normals.empty()) images.normals = products::NormalKindNamed(flags.normals);
   if (images.normals) products::RequireNormals(*images.normals, scene.info());
+  std::optional<trust::Trust> trust;
+  if (flags.trust) {
+    trust = trust::LoadTrustOf(target.scene);
+    images.trust = &*trust;
+    images.cones = scene.info().scales.Cones();
+  }
   scene::Appearance appearance = products::AppearanceOf(options.exposure, scene.info());
   appearance.normals = images.normals && products::NeedsRenderedNormals(*images.normals);
   const products::ViewRenderer renderer = products::RendererOf(scene, appearance, threads);
@@ -119,6 +128,10 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     }
     products::LogMaps(products::MakeMapProducts(scene, asked, maps, threads, photos ? &*photos : nullptr), maps);
   }
+  if (flags.TrustMap()) {
+    const std::filesystem::path map = products::WriteTrustMap(*trust, scene.info(), products::CasterOf(scene, appearance, threads), options, maps, threads);
+    base::LogInfo("map of the errors to expect: {}", map.string());
+  }
   if (!flags.plane.empty()) {
     const products::RayCaster caster = products::CasterOf(scene, products::AppearanceOf(options.exposure, scene.info()), threads);
     const int image_width = settings.run.image_width;
@@ -141,7 +154,7 @@ void Render(const CommandState& state, const RenderFlags& flags, const std::vect
   coordinator::Settings settings = state.Load(target.project ? ProjectConfig(*target.project) : std::vector<std::filesystem::path>{}, overrides);
   if (!flags.Anything()) {
     if (!target.project)
-      throw base::UsageError("nothing to render from " + flags.target + " was chosen. Give --path, --video, --ortho, --dsm or --plane");
+      throw base::UsageError("nothing to render from " + flags.target + " was chosen. Give --path, --video, --ortho, --dsm, --trust or --plane");
     coordinator::Pipeline pipeline = state.Begin(*target.project, std::move(settings), flags.restart);
     coordinator::ProductsStage(pipeline);
     return;
@@ -178,6 +191,8 @@ void AddRender(CLI::App& app, CommandState& state) {
       ->type_name("KIND")
       ->expected(0, 1)
       ->default_str("depth");
+  command->add_flag("--trust", flags->trust,
+                    "also write the errors to expect of the views; without views, or with --ortho or --dsm, a map of them as GeoTIFF");
   AddOptionFlag(*command, overrides, "--exposure", "products.exposure",
                 "exposure of the images: normal, a number of stops above it, or a photo's name to use its exposure");
   AddOptionFlag(*command, overrides, "--resolution", "products.resolution_m", "cell size of orthophoto, surface model and elevations in metres");
@@ -195,6 +210,7 @@ void AddRender(CLI::App& app, CommandState& state) {
       "  skyquilt render out --photo IMG_0007.jpg --exposure 1\n"
       "  skyquilt render out/scene.h5 --path flight.json --video -o movie\n"
       "  skyquilt render out --ortho --dsm --resolution 0.05\n"
+      "  skyquilt render out --trust                   map of the errors to expect\n"
       "  skyquilt render out --plane auto\n"
       "  skyquilt render out --plane 12.5,3,8,180,40,16 --resolution 0.01");
   command->callback([&state, flags, overrides] { state.run_command = [&state, flags, overrides] { Render(state, *flags, *overrides); }; });

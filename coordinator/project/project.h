@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "core/trust/trust.h"
+
 namespace skyquilt::coordinator {
 
 struct Project {
@@ -22,6 +24,7 @@ struct Project {
   std::filesystem::path TrainReport() const { return folder / "train.json"; }
   std::filesystem::path PixelCacheFile() const { return folder / "cache" / "pixels.bin"; }
   std::filesystem::path SceneFile() const { return folder / "scene.h5"; }
+  std::filesystem::path TrustFile() const { return trust::TrustFileOf(SceneFile()); }
   std::filesystem::path RendersFolder() const { return folder / "renders"; }
   std::filesystem::path ProductsFolder() const { return folder / "products"; }
   std::filesystem::path SurfaceFolder() const { return folder / "surface"; }

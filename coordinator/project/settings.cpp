@@ -19,6 +19,7 @@ config::Sections Settings::AllSections() {
   sections.Add("train", train, "the fine field of each block");
   sections.Add("priors", priors, "what the blocks are taught about surfaces beside the photos");
   sections.Add("robust", robust, "pixels of photos that the blocks do not learn from, because other photos contradict them");
+  sections.Add("trust", trust, "what is known about the errors of the scene, place by place");
   sections.Add("merge", merge, "how blocks are joined into one scene");
   sections.Add("products", products, "orthophoto, surface model, images, video");
   sections.Add("surface", surface, "mesh, point cloud, 3D tiles and terrain of the scene");

@@ -11,6 +11,7 @@
 #include "core/brightness/brightness_options.h"
 #include "core/config/options.h"
 #include "core/config/override.h"
+#include "core/trust/trust_options.h"
 #include "evaluate/evaluate.h"
 #include "masks/mask_options.h"
 #include "merge/merge_options.h"
@@ -37,6 +38,7 @@ struct Settings {
   worker::TrainOptions train;
   worker::PriorOptions priors;
   worker::RobustOptions robust;
+  trust::TrustOptions trust;
   merge::MergeOptions merge;
   products::ProductOptions products;
   surface::SurfaceOptions surface;

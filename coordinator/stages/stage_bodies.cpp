@@ -18,7 +18,6 @@
 #include "core/survey/view_kind.h"
 #include "evaluate/evaluate.h"
 #include "masks/make_masks.h"
-#include "merge/merge.h"
 #include "partition/altitude.h"
 #include "partition/make_blocks.h"
 #include "prepare/prepare.h"
@@ -52,6 +51,7 @@ void LogBlocks(const partition::BlockSet& blocks) {
 std::string ScoresKey(const Pipeline& pipeline, const StageStamp& stamp) {
   const evaluate::EvaluateOptions& options = pipeline.settings.evaluate;
   std::string key = stamp.Hash();
+  if (std::filesystem::exists(pipeline.project.TrustFile())) key.append(" ").append(FileIdentity(pipeline.project.TrustFile()));
   if (!options.lpips_network.empty()) key.append(" ").append(FileIdentity(options.lpips_network));
   if (!options.normal_photos.empty()) key.append(" ").append(PhotosIdentity(options.normal_photos, pipeline.project.folder));
   return key;
@@ -110,42 +110,6 @@ std::string TrainBody(Pipeline& pipeline, const StageStamp& stamp) {
   return pipeline.training.Failed().empty() ? StageStamp::kDone : StageStamp::kFailed;
 }
 
-std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
-  const Project& project = pipeline.project;
-  const scene::TrainReport training = scene::ReadTrainReport(project.TrainReport());
-  const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
-  const std::optional<StageStamp> train = LoadStamp(project, "train");
-  merge::MergeInput input{.context = project.ContextCheckpoint(),
-                          .blocks = {},
-                          .origin = blocks.origin,
-                          .georeferenced = blocks.georeferenced,
-                          .accuracy = blocks.accuracy,
-                          .height_reference = blocks.height_reference,
-                          .borders = pipeline.settings.merge.Borders(),
-                          .storage = pipeline.settings.merge.Storage(),
-                          .use_context = pipeline.settings.train.coupling != "independent",
-                          .config_toml = pipeline.settings.Toml(),
-                          .config_hash = train ? train->Hash() : "",
-                          .scene = project.SceneFile()};
-  for (const partition::Block& block : blocks.blocks) {
-    if (block.empty) continue;
-    const scene::FieldTraining* field = training.Find(block.name);
-    if (field != nullptr && field->ok && field->shows_context && pipeline.settings.train.coupling != "independent") {
-      base::LogWarning("block {} shows its photos worse than the context does ({:.2f} dB instead of {:.2f} dB): the scene shows the context there",
-                       block.name, field->block_psnr_db, field->context_psnr_db);
-      input.blocks.push_back({.checkpoint = project.BlockCheckpoint(block.name), .gsd_m = block.gsd_m, .shows_context = true});
-    } else if (field != nullptr && field->ok) {
-      input.blocks.push_back({.checkpoint = project.BlockCheckpoint(block.name), .gsd_m = block.gsd_m});
-    } else {
-      base::LogWarning("block {} has no finished checkpoint: the scene shows the coarse context field there. Run 'skyquilt train' to train it again",
-                       block.name);
-    }
-  }
-  merge::MergeScene(input);
-  base::LogInfo("scene: {}", project.SceneFile().string());
-  return StageStamp::kDone;
-}
-
 std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const products::ProductKinds kinds = KindsOf(pipeline);
   products::ProductOptions options = OptionsOfProducts(pipeline);
@@ -198,12 +162,14 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp) {
   const image::PixelCache pixels =
       image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), pipeline.settings.run.image_width, threads);
   const std::optional<scene::TrainReport> training = scene::TryReadTrainReport(project.TrainReport());
+  const std::optional<trust::Trust> trust = TrustOfScene(project);
   const std::optional<evaluate::metrics::RunTimes> times = pipeline.timed ? std::optional(pipeline.timed->Times()) : std::nullopt;
   const evaluate::EvaluateInput input{.scene = &session.scene(),
                                       .survey = &survey,
                                       .blocks = &blocks,
                                       .pixels = &pixels,
                                       .project_folder = project.folder,
+                                      .trust = trust ? &*trust : nullptr,
                                       .training = training ? &*training : nullptr,
                                       .config_text = pipeline.settings.Toml(),
                                       .vertical = geo::VerticalNamed(pipeline.settings.products.vertical),

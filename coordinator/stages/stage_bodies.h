@@ -1,10 +1,12 @@
 // The work of each stage. Each function returns StageStamp::kDone or kFailed; training and evaluation store their results in the pipeline.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "coordinator/project/stamp.h"
 #include "coordinator/stages/pipeline.h"
+#include "core/trust/trust.h"
 #include "products/product_kinds.h"
 
 namespace skyquilt::coordinator {
@@ -20,6 +22,9 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string BuildingsBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string TourBody(Pipeline& pipeline, const StageStamp& stamp);
 std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp);
+
+// What was measured when the scene was merged; nothing, with a warning where that is a surprise, for a scene whose trust is not known.
+std::optional<trust::Trust> TrustOfScene(const Project& project);
 
 // What products.kinds gives for the pipeline's survey; photos look down where there is no survey.
 products::ProductKinds KindsOf(const Pipeline& pipeline);

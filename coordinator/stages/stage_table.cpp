@@ -154,6 +154,7 @@ std::vector<Stage> MakeTable() {
              FlatOptions inputs{{"survey", MaskedSurveyIdentity(pipeline)}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
              // Left out where they change nothing, so that trainings of older programs stay valid.
              if (pipeline.settings.robust.Any()) inputs.merge(Select(pipeline.settings.Flat(), {"robust."}));
+             if (pipeline.settings.trust.tiles != trust::TrustOptions().tiles) inputs.merge(Select(pipeline.settings.Flat(), {"trust.tiles"}));
              return inputs;
            },
        .outputs =
@@ -170,11 +171,14 @@ std::vector<Stage> MakeTable() {
        .check = RequireReadableTraining,
        .inputs =
            [](const Pipeline& pipeline) {
-             return FlatOptions{{"train", FileIdentity(pipeline.project.TrainReport())}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
+             FlatOptions inputs{{"train", FileIdentity(pipeline.project.TrainReport())}, {"blocks", FileIdentity(pipeline.project.BlocksFile())}};
+             // Left out where it is the default, so that scenes of older programs stay valid.
+             if (pipeline.settings.trust.rays != trust::TrustOptions().rays) inputs.merge(Select(pipeline.settings.Flat(), {"trust.rays"}));
+             return inputs;
            },
        .outputs =
            [](const Project& p) {
-             return Paths{p.SceneFile(), p.SceneFile().string() + ".prev"};
+             return Paths{p.SceneFile(), p.SceneFile().string() + ".prev", p.TrustFile(), p.TrustFile().string() + ".prev"};
            },
        .completion_files = [](const Project& p) { return Paths{p.SceneFile()}; },
        .body = MergeBody},

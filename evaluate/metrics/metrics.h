@@ -16,6 +16,7 @@
 #include "evaluate/buildings/building_scores.h"
 #include "evaluate/metrics/run_times.h"
 #include "evaluate/ortho/ortho_scores.h"
+#include "evaluate/trust/sparsification.h"
 #include "evaluate/photos/kept_points.h"
 #include "evaluate/photos/photo_score.h"
 #include "evaluate/surface/surface_scores.h"
@@ -86,6 +87,7 @@ struct Metrics {
   double flat_roof_nmad_m = kNotMeasured;                  // and of the NMAD
   bool has_truth = false;                                  // simulated survey with true depth
   photos::KeptPointErrors kept_points;
+  trust::TrustScores trust;                            // no pixels: not measured
   std::optional<surface::SurfaceScores> surface;       // nothing when no surface was made
   std::optional<buildings::BuildingScores> buildings;  // nothing when no buildings were searched
   std::optional<ortho::OrthoScores> ortho;             // nothing when no orthophoto was made

@@ -36,6 +36,7 @@ Json PhotoJson(const photos::PhotoScore& score, bool has_truth) {
   json["lpips"] = NumberOrNull(score.lpips);
   json["exposure_gain"] = NumberOrNull(score.exposure_gain);
   json["predicted_stops"] = score.predicted_stops;
+  json["psnr_expected"] = NumberOrNull(score.expected_psnr_db);
   json["psnr_exif_gain"] = NumberOrNull(score.psnr_exif_gain_db);
   json["psnr_right_half"] = NumberOrNull(score.right_half_db);
   json["psnr_right_half_fitted"] = NumberOrNull(score.right_half_fitted_db);
@@ -66,6 +67,18 @@ Json KeptPointsJson(const photos::KeptPointErrors& errors) {
   Json json = {{"points", errors.points}, {"rays", errors.rays}};
   for (const auto& [key, member] : kKeptPoints) json[key] = NumberOrNull(errors.*member);
   return json;
+}
+
+Json TrustJson(const trust::TrustScores& trust) {
+  if (trust.pixels == 0) return nullptr;
+  return {{"pixels", trust.pixels},
+          {"ause", NumberOrNull(trust.ause)},
+          {"ause_by_photos", NumberOrNull(trust.ause_photos)},
+          {"ause_by_gradient", NumberOrNull(trust.ause_gradient)},
+          {"ause_by_opacity", NumberOrNull(trust.ause_opacity)},
+          {"least_over_most_trusted", NumberOrNull(trust.least_over_most)},
+          {"rms_expected", NumberOrNull(trust.expected_rms)},
+          {"rms_found", NumberOrNull(trust.found_rms)}};
 }
 
 Json TimesJson(const RunTimes& times) {
@@ -142,6 +155,7 @@ std::string MetricsJson(const Metrics& metrics) {
     PutClasses(metrics, &json);
   }
   json["kept_points"] = KeptPointsJson(metrics.kept_points);
+  json["trust"] = TrustJson(metrics.trust);
   if (metrics.surface) json["surface"] = ToJson(*metrics.surface);
   if (metrics.buildings) json["buildings"] = ToJson(*metrics.buildings);
   if (metrics.ortho) json["orthophoto"] = ToJson(*metrics.ortho);

@@ -23,11 +23,11 @@ constexpr size_t kFewestBytesPerPhoto = 160;  // of its numbers; names may be sh
 // Calls visit with every member of a score. The list must be complete: this does not compile otherwise.
 template <typename Score, typename Visit>
 void VisitMembers(Score& score, Visit visit) {
-  auto& [photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_exif_gain_db, psnr_normal_db,
-         ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops, depth_rmse_m,
+  auto& [photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, expected_psnr_db,
+         psnr_exif_gain_db, psnr_normal_db, ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops, depth_rmse_m,
          depth_median_abs_m, render_seconds] = score;
-  visit(photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_exif_gain_db, psnr_normal_db,
-        ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops, depth_rmse_m,
+  visit(photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, expected_psnr_db,
+        psnr_exif_gain_db, psnr_normal_db, ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops, depth_rmse_m,
         depth_median_abs_m, render_seconds);
 }
 
@@ -55,6 +55,7 @@ void AddPooled(const scene::SceneInfo& info, const Scores& scores, Metrics* metr
   metrics->psnr_matched_interior_db = scores.seams.MatchedInteriorDb();
   metrics->psnr_seam_db = skyquilt::metrics::PsnrOf(scores.seams.AllSeam());
   metrics->seam_psnr_gap_db = scores.seams.GapDb();
+  metrics->trust = trust::ScoreTrust(scores.trust);
   metrics->exposure_seam = scores.exposure_seams.border;
   metrics->exposure_seam_control = scores.exposure_seams.control;
   if (!metrics->has_truth) return;
@@ -105,6 +106,7 @@ void Scores::Add(const photos::ScoredPhoto& photo) {
   classes.Add(photo.task, findings);
   flat_roofs.Add(photo.task, findings);
   floaters += photo.floaters;
+  trust.Add(photo.trust.sample);
 }
 
 void Scores::Save(base::BytePacker* out) const {
@@ -118,6 +120,7 @@ void Scores::Save(base::BytePacker* out) const {
   classes.Save(out);
   flat_roofs.Save(out);
   out->Add(floaters);
+  trust.Save(out);
 }
 
 void Scores::Load(base::ByteUnpacker* in) {
@@ -133,6 +136,7 @@ void Scores::Load(base::ByteUnpacker* in) {
   classes.Load(in);
   flat_roofs.Load(in);
   in->Take(&floaters);
+  trust.Load(in);
 }
 
 double Scores::Psnr() const {

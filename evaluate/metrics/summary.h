@@ -14,6 +14,7 @@
 #include "evaluate/photos/floater_opacity.h"
 #include "evaluate/photos/held_out_scorer.h"
 #include "evaluate/photos/seam_errors.h"
+#include "evaluate/trust/sparsification.h"
 
 namespace skyquilt::evaluate::metrics {
 
@@ -26,6 +27,7 @@ struct Scores {
   ClassErrors classes;
   photos::FlatRoofPoints flat_roofs;
   photos::FloaterOpacity floaters;
+  trust::TrustPixels trust;
   photos::ExposureSeams exposure_seams;
 
   // n_boxes: HeldOutScorer::n_boxes().

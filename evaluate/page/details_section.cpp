@@ -86,6 +86,20 @@ void AddSeamRows(const metrics::Metrics& metrics, FigureTable* table) {
              "The same along lines where no photo ends: the step that texture alone gives.");
 }
 
+void AddTrustRows(const trust::TrustScores& trust, FigureTable* table) {
+  if (trust.pixels == 0) return;
+  table->Group("Trust");
+  table->Row("Error to expect", FormatFixed(trust.expected_rms, 3),
+             "Root mean square over the scored pixels, 1 is white: what tiles of training photos say that nothing was learned from.");
+  table->Row("Error found", FormatFixed(trust.found_rms, 3), "The same of the held-out photos. Near the expected one is good.");
+  table->Row("Least over most trusted", FormatFixed(trust.least_over_most, 1),
+             "Mean squared error of the tenth of the pixels that is trusted least, over that of the tenth that is trusted most.");
+  table->Row("AUSE", FormatFixed(trust.ause, 3),
+             fmt::format("How far the order of trust is from the true order of errors: 0 is the same. By the number of photos {}, by the gradient of the "
+                         "picture {}, by opacity {}.",
+                         FormatFixed(trust.ause_photos, 3), FormatFixed(trust.ause_gradient, 3), FormatFixed(trust.ause_opacity, 3)));
+}
+
 void AddFlightRows(const metrics::Metrics& metrics, FigureTable* table) {
   if (!metrics.georeferenced) return;  // lengths are in units of unknown size
   table->Group("Flight");
@@ -114,6 +128,7 @@ std::string DetailsSection(const ReportInput& input) {
   AddSurfaceRows(metrics, &table);
   AddKeptPointRows(metrics, &table);
   AddSeamRows(metrics, &table);
+  AddTrustRows(metrics.trust, &table);
   AddFlightRows(metrics, &table);
   AddCostRows(metrics, &table);
   return SectionBegin("details", "Details") + table.Html() + ClassTable(metrics) + "</section>\n";

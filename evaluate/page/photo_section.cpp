@@ -24,6 +24,7 @@ std::string PhotoCard(const ReportInput& input, size_t index) {
   html += Chip("SSIM", FormatFixed(score.ssim, 3));
   html += Chip("FLIP", FormatFixed(score.flip, 3));
   html += Chip("coverage", FormatPercent(score.Coverage()));
+  if (std::isfinite(score.expected_psnr_db)) html += Chip("PSNR to expect", FormatFixed(score.expected_psnr_db, 2, "dB"));
   html += Chip("full frame", FormatFixed(score.psnr_full_db, 2, "dB"));
   if (input.metrics->has_truth) html += Chip("median depth error", FormatFixed(score.depth_median_abs_m, 2, "m"));
   html += "</div></header><div class=\"pics\">";
@@ -39,6 +40,7 @@ std::string PhotoCard(const ReportInput& input, size_t index) {
   picture("photo-pic", images.photo, "Photo");
   picture("render-pic", images.render, "Render");
   picture("error-pic", images.error, "Error", Legend(input, "0", FormatFixed(input.error_high, 2)));
+  picture("trust-pic", images.trust, "Error to expect", Legend(input, "0", FormatFixed(input.error_high, 2)));
   picture("depth-pic", images.depth, "Depth", Legend(input, FormatFixed(images.depth_low_m, 1), FormatFixed(images.depth_high_m, 1, "m")));
   picture("normals-pic", images.normals, "Normals of the render");
   picture("true-normals-pic", images.true_normals, "True normals");
@@ -49,6 +51,8 @@ std::string PhotoTable(const ReportInput& input) {
   const bool truth = input.metrics->has_truth;
   std::string columns = Headings({"Held-out photo"}) +
                         NumberHeadings({"PSNR", "SSIM", "FLIP", "Coverage", "PSNR, full frame", "SSIM, full frame", "FLIP, full frame", "LPIPS"});
+  const bool trust = input.metrics->trust.pixels > 0;
+  if (trust) columns += NumberHeadings({"PSNR to expect"});
   if (truth) columns += NumberHeadings({"Depth error, RMSE", "Depth error, median"});
   std::string html = TableBegin(columns + NumberHeadings({"Exposure gain", "Size", "Render time"}));
   for (size_t i = 0; i < input.metrics->photos.size(); ++i) {
@@ -57,6 +61,7 @@ std::string PhotoTable(const ReportInput& input) {
     html += pictured ? fmt::format("<tr><td><a href=\"#photo-{}\">{}</a></td>", i, EscapeHtml(score.name)) : "<tr>" + TextCell(score.name);
     html += FixedCell(score.psnr_db, 2, "dB") + FixedCell(score.ssim, 3) + FixedCell(score.flip, 3) + PercentCell(score.Coverage()) +
             FixedCell(score.psnr_full_db, 2, "dB") + FixedCell(score.ssim_full, 3) + FixedCell(score.flip_full, 3) + FixedCell(score.lpips, 3);
+    if (trust) html += FixedCell(score.expected_psnr_db, 2, "dB");
     if (truth) html += FixedCell(score.depth_rmse_m, 2, "m") + FixedCell(score.depth_median_abs_m, 2, "m");
     html += FixedCell(score.exposure_gain, 3);
     html += NumberCell(score.width, fmt::format("{} \xC3\x97 {}", score.width, score.height));

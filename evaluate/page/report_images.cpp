@@ -103,6 +103,9 @@ PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::p
   };
   images.normals = write_normals(pixels.normals, "_normals.png");
   images.true_normals = write_normals(pixels.true_normals, "_true_normals.png");
+  if (pixels.expected_error != nullptr) {
+    images.trust = WriteColors(image::Colorize(*pixels.expected_error, 0.0F, error_high), report_folder, prefix + "_trust.png", max_width);
+  }
   if (pixels.mesh != nullptr) images.mesh = Write(*pixels.mesh, report_folder, prefix + "_mesh.jpg", max_width);
   return images;
 }

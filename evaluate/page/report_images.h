@@ -19,6 +19,7 @@ struct PhotoPixels {
   std::span<const uint8_t> scored;              // row-major, 0 = masked or not covered
   const image::ImageF* normals = nullptr;       // of the rendering, ENU; null: not shown
   const image::ImageF* true_normals = nullptr;  // null: not shown
+  const image::ImageF* expected_error = nullptr;  // one channel, NaN where there is none; null: not shown
   const image::Image8* mesh = nullptr;          // of the surface, at the photo's brightness; null: not shown
 };
 
@@ -29,7 +30,7 @@ image::Image8 ErrorPicture(const PhotoPixels& pixels, float error_high);
 // Quantiles `low` and `high` (0..1) of the finite values; false when there is none.
 bool PercentileRange(const image::ImageF& image, double low, double high, float* low_value, float* high_value);
 
-// Writes <prefix>_photo.jpg, _render.jpg, _error.png, _depth.png and, if given, _normals.png, _true_normals.png and _mesh.jpg under
+// Writes <prefix>_photo.jpg, _render.jpg, _error.png, _depth.png and, if given, _normals.png, _true_normals.png, _trust.png and _mesh.jpg under
 // report_folder/images, at most max_width pixels wide. Throws base::InputError.
 PhotoImages WritePhotoImages(const PhotoPixels& pixels, const std::filesystem::path& report_folder, const std::string& prefix, int max_width,
                              float error_high);

@@ -28,6 +28,7 @@ namespace skyquilt::evaluate::page {
 struct PhotoImages {
   std::string photo, render, error, depth;
   std::string normals, true_normals;  // of rendering and truth
+  std::string trust;                  // error that trust expects
   std::string mesh;                   // the surface's mesh as the photo would show it
   int width = 0;                      // pixels
   int height = 0;

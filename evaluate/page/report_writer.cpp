@@ -17,7 +17,7 @@ namespace skyquilt::evaluate::page {
 
 namespace {
 
-constexpr float kErrorHigh = 0.25F;    // display values at the top of the error colours
+constexpr float kErrorHigh = skyquilt::trust::kTopError;  // display values at the top of the error colours
 constexpr int kPhotosWithNormals = 2;  // enough to see how rough surfaces are
 constexpr int kPhotosWithMesh = 3;
 
@@ -84,6 +84,7 @@ void ReportPictures::Write(const photos::ScoredPhoto& scored) {
       pixels.true_normals = &findings.true_normals;
       ++written_.n_with_normals;
     }
+    if (!scored.trust.expected.error.Empty()) pixels.expected_error = &scored.trust.expected.error;
     if (!scored.mesh.Empty() && std::find(with_mesh_.begin(), with_mesh_.end(), photo) != with_mesh_.end()) pixels.mesh = &scored.mesh;
     written_.images.back() =
         WritePhotoImages(pixels, input_.ReportFolder(), fmt::format("photo_{:05d}", photo), input_.options.report_image_width, kErrorHigh);

@@ -11,8 +11,8 @@ namespace {
 // Calls visit with every member. The lists must be complete: this does not compile otherwise.
 template <typename Images, typename Visit>
 void VisitImages(Images& images, Visit visit) {
-  auto& [photo, render, error, depth, normals, true_normals, mesh, width, height, depth_low_m, depth_high_m] = images;
-  visit(photo, render, error, depth, normals, true_normals, mesh, width, height, depth_low_m, depth_high_m);
+  auto& [photo, render, error, depth, normals, true_normals, trust, mesh, width, height, depth_low_m, depth_high_m] = images;
+  visit(photo, render, error, depth, normals, true_normals, trust, mesh, width, height, depth_low_m, depth_high_m);
 }
 
 template <typename View, typename Visit>
@@ -51,7 +51,7 @@ bool WrittenPictures::Exist(const std::filesystem::path& report_folder) const {
   const auto all = [&](const auto&... files) { return (is_there(files) && ...); };
   return std::all_of(
              images.begin(), images.end(),
-             [&](const PhotoImages& one) { return all(one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh); }) &&
+             [&](const PhotoImages& one) { return all(one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.trust, one.mesh); }) &&
          std::all_of(views.begin(), views.end(), [&](const BrightnessView& one) { return all(one.photo, one.recorded, one.normal); });
 }
 

@@ -76,7 +76,7 @@ bool HeldOutScorer::LooksAreAlike() const {
 }
 
 PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads,
-                                         std::vector<render::RayColor>* as_rendered) const {
+                                         std::vector<render::RayColor>* as_rendered, PhotoTrust* trust) const {
   const Recordings recordings = RecordingsOf(photo);
   const auto start = std::chrono::steady_clock::now();
   // A field whose encoding has no slope cannot be rendered with normals, not even with those of a head.
@@ -85,6 +85,8 @@ PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, ba
   std::vector<render::RayColor> rendered = input_.scene->RenderCamera(task.camera, task.cam_from_enu, appearance, threads);
   const std::vector<render::RayColor> as_reference = recordings.Differ() ? rendered : std::vector<render::RayColor>();
   if (as_rendered != nullptr) *as_rendered = rendered;
+  std::vector<skyquilt::trust::PixelFacts> facts;
+  if (input_.trust != nullptr) facts = FactsOfPhoto(*input_.trust, task, input_.scene->info().scales.Cones(), rendered, threads);
   ApplyResponse(task.camera, recordings.predicted, rendered, threads);
   const double render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
@@ -93,8 +95,10 @@ PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, ba
   if (field_normals && input_.scene->info().normal_head) {
     findings.head_normals = NormalsOf(rendered, findings.scored, &render::RayColor::predicted_normal);
   }
+  if (input_.trust != nullptr) *trust = CompareTrust(*input_.trust, facts, task, rendered, findings.scored, threads);
   PhotoScore& score = findings.score;
   score.photo = photo;
+  score.expected_psnr_db = trust->expected_psnr_db;
   score.name = input_.survey->photos[static_cast<size_t>(photo)].name;
   score.exposure_gain = recordings.gain;
   for (size_t c = 0; c < 3; ++c) {
@@ -116,7 +120,7 @@ ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& 
   scored.task = LoadHeldOutPhoto(*input_.survey, *input_.pixels, photo, input_.options.image_width);
   const std::filesystem::path normal_photos = input_.options.normal_photos;
   const bool shows_normal = keep_normal || !normal_photos.empty();
-  scored.findings = ScoreRecorded(photo, scored.task, threads, shows_normal && LooksAreAlike() ? &scored.normal : nullptr);
+  scored.findings = ScoreRecorded(photo, scored.task, threads, shows_normal && LooksAreAlike() ? &scored.normal : nullptr, &scored.trust);
   scored.recording = RecordingsOf(photo).predicted;
   PhotoScore& score = scored.findings.score;
   if (lpips_) score.lpips = LpipsOf(*lpips_, scored.task, scored.findings.render);

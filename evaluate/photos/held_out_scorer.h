@@ -12,6 +12,7 @@
 #include "evaluate/photos/floater_opacity.h"
 #include "evaluate/photos/photo_response.h"
 #include "evaluate/photos/photo_scorer.h"
+#include "evaluate/photos/photo_trust.h"
 
 namespace skyquilt::evaluate::photos {
 
@@ -21,6 +22,7 @@ struct ScoredPhoto {
   FloaterOpacity floaters;               // no rays without true depth
   PhotoResponse recording;               // that was applied to the rendering
   std::vector<render::RayColor> normal;  // rendered at normal brightness, row-major; empty when not requested
+  PhotoTrust trust;                      // nothing where it was not measured
   image::Image8 mesh;                    // the surface's mesh at the photo's brightness (surface_scorer.h); empty without a surface
 };
 
@@ -48,7 +50,8 @@ class HeldOutScorer {
   // Whether the rendering at normal brightness has the colours of the recorded one before the photo's response.
   bool LooksAreAlike() const;
   // as_rendered: takes the rendering before the response; may be null.
-  PhotoResult ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads, std::vector<render::RayColor>* as_rendered) const;
+  PhotoResult ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads, std::vector<render::RayColor>* as_rendered,
+                            PhotoTrust* trust) const;
   std::vector<render::RayColor> RenderNormal(const HeldOutPhoto& task, base::ThreadPool& threads) const;
 
   const EvaluateInput& input_;

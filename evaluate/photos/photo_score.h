@@ -20,6 +20,7 @@ struct PhotoScore {
   double exposure_gain = 1.0;                               // linear light, from the tags
   std::array<double, 3> predicted_stops = {0.0, 0.0, 0.0};  // predicted gain, applied in addition, per colour
   double psnr_db = kNotMeasured;                            // over the covered pixels
+  double expected_psnr_db = kNotMeasured;                   // the same, as trust expects it (core/trust/trust.h)
   double psnr_exif_gain_db = kNotMeasured;                  // over the covered pixels, with exposure_gain alone
   double psnr_normal_db = kNotMeasured;  // at normal brightness against a normally exposed photo (evaluate.normal_photos), covered pixels
   double ssim_normal = kNotMeasured;

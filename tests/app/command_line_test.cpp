@@ -186,6 +186,17 @@ TEST(CommandLine, NumericsRunsTheGroupsAskedFor) {
   EXPECT_NE(unknown.err.find("nonfinite"), std::string::npos);
 }
 
+TEST(CommandLine, WithoutItsBenchmarksTheProgramSaysHowToBuildThem) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"bench", "numerics", "--quick"}, {"--set", "run.seed=2", "--quiet", "bench"}, {"bench", "--help"}}) {
+    const Called missing = CallProgram(words, nullptr);
+    EXPECT_EQ(missing.status, 3);
+    EXPECT_NE(missing.err.find("skyquilt-bench"), std::string::npos) << missing.err;
+    EXPECT_NE(missing.err.find("--target skyquilt_bench"), std::string::npos);
+  }
+  EXPECT_EQ(CallProgram({"--help"}, nullptr).status, 0);
+}
+
 TEST(Describe, ForeignFilesAreRefusedByName) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("skyquilt_describe_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);

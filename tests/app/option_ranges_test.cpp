@@ -97,7 +97,7 @@ TEST(OptionRanges, ContainTheDefaults) {
 TEST(OptionRanges, EveryOptionStandsInADocumentAPresetOrABench) {
   std::string texts = base::ReadFile("tests/simulate/faults.toml");
   for (const char* preset : {"fast", "quality", "level"}) texts += base::ReadFile(std::string("configs/") + preset + ".toml");
-  for (const char* folder : {"docs", "bench", "app/commands"}) {
+  for (const char* folder : {"docs", "bench", "app/bench", "app/commands"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
       const std::string ending = entry.path().extension().string();
       if (ending == ".md" || ending == ".cpp") texts += base::ReadFile(entry.path());

@@ -71,6 +71,18 @@ def check_painting(skyquilt, project, folder):
     expect(maps("strip3") == maps("strip"), "ranks paint another orthophoto")
 
 
+def check_trust(skyquilt, project, folder):
+    """The same with several ranks; gone where it is switched off, and then asked for in vain."""
+    trust = (project / "trust.h5").read_bytes()
+    skyquilt.call("merge", project, "--restart", ranks=3)
+    expect((project / "trust.h5").read_bytes() == trust, "three ranks measure another trust")
+    without = folder / "without_trust"
+    shutil.copytree(project, without)
+    skyquilt.call("merge", without, "--restart", "--set", "trust.tiles=0")
+    expect(not (without / "trust.h5").exists(), "trust was measured though it is switched off")
+    skyquilt.call("render", without, "--trust", "-o", folder / "no_map", status=3, says=("trust.h5", "trust.tiles"))
+
+
 def pictures_of(folder):
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".png", ".tiff", ".tif"))
     expect(len(files) >= 6, f"{folder} has only {[path.name for path in files]}")
@@ -95,16 +107,19 @@ def test(skyquilt, folder):
     # A context that the blocks soon surpass: it would be shown in their place otherwise.
     skyquilt.call("train", project, "--steps", "60", "--set", "context.steps=10", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096")
     skyquilt.call("merge", project)
+    check_trust(skyquilt, project, folder)
     fields = bytes_of_fields(json.loads(skyquilt.call("info", project / "scene.h5", "--json")))
     # Memory of each rank: too little for the whole scene, but enough for the context and any two neighbouring blocks.
     little = str(2 * int(sum(fields.values()) - 0.5 * min(fields.values())))
 
-    asked = ("--test", "--width", "120", "--ortho", "--dsm", "--normals", "density")
+    asked = ("--test", "--width", "120", "--ortho", "--dsm", "--normals", "density", "--trust")
     skyquilt.call("render", project, *asked, "-o", folder / "alone")
     alone = pictures_of(folder / "alone")
     views = [name for name in alone if name.endswith("_depth.tiff")]
     normals = {name: digest for name, digest in alone.items() if name.endswith("_normals.png")}
     expect(len(normals) == len(views) > 0, f"{len(normals)} pictures of normals for {len(views)} views")
+    errors = [name for name in alone if name.endswith("_trust.tiff")]
+    expect(len(errors) == len(views) and "trust.tif" in alone, f"{len(errors)} pictures of the errors to expect for {len(views)} views")
     skyquilt.call("render", project, "--normals", "--test", "--width", "120", "-o", folder / "depth_normals")
     of_depth = pictures_of(folder / "depth_normals")
     for name, digest in alone.items():
@@ -133,6 +148,9 @@ def test(skyquilt, folder):
     skyquilt.call("evaluate", project)
     expected = scores_of(project)
     expect(expected["psnr"] > 10.0, f"PSNR {expected['psnr']}")
+    trust = expected["trust"]
+    expect(0.3 < trust["rms_expected"] / trust["rms_found"] < 3.0 and trust["ause"] < trust["ause_by_opacity"], f"trust: {trust}")
+    expect(all(image["psnr_expected"] > 5.0 for image in expected["images"]), "photos lack the PSNR to expect")
     expect(all(medians_of(expected, kind) == [] for kind in ("density", "head")), "normals of the field are scored without being asked for")
     field_normals = ("--set", "evaluate.field_normals=true")
     skyquilt.call("evaluate", project, "--restart", *field_normals)

@@ -1,4 +1,4 @@
-// Runs a command line of the program inside the test's process, and captures its output.
+// Runs a command line of the program, with its benchmarks unless add_bench is null, inside the test's process, and captures its output.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/bench/bench_commands.h"
 #include "app/commands/cli.h"
 
 namespace skyquilt {
@@ -16,7 +17,7 @@ struct Called {
   std::string err;
 };
 
-inline Called CallProgram(std::vector<std::string> words) {
+inline Called CallProgram(std::vector<std::string> words, app::AddBenchCommand add_bench = app::AddBench) {
   words.insert(words.begin(), "skyquilt");
   std::vector<char*> argv;
   argv.reserve(words.size());
@@ -24,7 +25,7 @@ inline Called CallProgram(std::vector<std::string> words) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   Called called;
-  called.status = app::RunCommandLine(static_cast<int>(argv.size()), argv.data());
+  called.status = app::RunCommandLine(static_cast<int>(argv.size()), argv.data(), add_bench);
   called.out = testing::internal::GetCapturedStdout();
   called.err = testing::internal::GetCapturedStderr();
   return called;

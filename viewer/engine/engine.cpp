@@ -43,6 +43,8 @@ struct Engine::Impl {
                 question, data.survey(),
                 [this](int photo, std::span<const render::Ray> rays, std::span<render::RayColor> out) { scenes.RenderAsPhoto(photo, rays, out); },
                 [this](std::string png) { return data.AddPicture(std::move(png)); });
+          } else if constexpr (std::is_same_v<T, TrustMapRequest>) {
+            return MakeTrustMap(question, scenes.TrustOfMain(), [this](std::string png) { return data.AddPicture(std::move(png)); });
           } else {
             return nullptr;
           }

@@ -196,6 +196,17 @@ void SceneHolder::UpdateState() {
   }
 }
 
+trust::Trust SceneHolder::TrustOfMain() const {
+  if (Frame(Which::kMain) == nullptr) throw BadMessage(WhyNot(Which::kMain));
+  try {
+    return trust::LoadTrustOf(main_.project.SceneFile());
+  } catch (const base::InputError& error) {
+    base::LogWarning("no map of the errors to expect: {}", error.what());
+    throw BadMessage("it is not known how far this scene can be trusted: merge it again (skyquilt merge " +
+                     main_.project.folder.filename().string() + " --restart) with trust.tiles above 0");
+  }
+}
+
 const SceneFrame* SceneHolder::Frame(Which project) const {
   if (loading_) return nullptr;
   if (project == Which::kMain) return main_.loaded ? &main_.loaded->frame : nullptr;

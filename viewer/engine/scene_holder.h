@@ -11,6 +11,7 @@
 
 #include "coordinator/rendering/scene_session.h"
 #include "core/comm/communicator.h"
+#include "core/trust/trust.h"
 #include "viewer/data/file_look.h"
 #include "viewer/data/project_data.h"
 #include "viewer/data/survey_place.h"
@@ -58,6 +59,9 @@ class SceneHolder : public Renderer {
 
   // As Render of the main project, in the brightness of this photo. For Query's PhotoCaster.
   void RenderAsPhoto(int photo, std::span<const render::Ray> rays, std::span<render::RayColor> out);
+
+  // What is known about the errors of the main project's scene. Throws BadMessage, with how to fix it, when nothing is.
+  trust::Trust TrustOfMain() const;
 
   const SceneFrame* Frame(Which project) const override;
   std::string WhyNot(Which project) const override;

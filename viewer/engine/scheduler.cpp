@@ -102,7 +102,7 @@ void Scheduler::Handle(ClientId id, const ClientMessage& message) {
           Ask(id, client, message, said.id, kPick);
         } else if constexpr (std::is_same_v<T, PhotosAtRequest> || std::is_same_v<T, ProfileRequest>) {
           Ask(id, client, message, said.id, kSmallQuestion);
-        } else if constexpr (std::is_same_v<T, VolumeRequest> || std::is_same_v<T, ErrorMapRequest>) {
+        } else if constexpr (std::is_same_v<T, VolumeRequest> || std::is_same_v<T, ErrorMapRequest> || std::is_same_v<T, TrustMapRequest>) {
           Ask(id, client, message, said.id, kInTurn);
         }
       },

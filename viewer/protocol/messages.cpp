@@ -119,6 +119,7 @@ ClientMessage ReadMessage(const std::string& type, base::JsonObject& fields) {
   if (type == "photos_at") return ReadPhotosAt(fields);
   if (type == "profile") return ReadProfile(fields);
   if (type == "volume") return ReadVolume(fields);
+  if (type == "trust_map") return TrustMapRequest{.id = U32(fields, "id")};
   if (type == "error_map") return ErrorMapRequest{.id = U32(fields, "id")};
   if (type == "cancel") return CancelRequest{.id = U32(fields, "id")};
   throw BadMessage("type: \"" + base::ShownStart(type) + "\" is not known");

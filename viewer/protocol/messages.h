@@ -94,6 +94,9 @@ struct VolumeRequest {
 };
 
 // The error of the held-out photos, as a map.
+struct TrustMapRequest {
+  uint32_t id = 0;
+};
 struct ErrorMapRequest {
   uint32_t id = 0;
 };
@@ -104,7 +107,7 @@ struct CancelRequest {
 };
 
 using ClientMessage =
-    std::variant<Hello, ViewRequest, StopView, FrameAck, PickRequest, PhotosAtRequest, ProfileRequest, VolumeRequest, ErrorMapRequest, CancelRequest>;
+    std::variant<Hello, ViewRequest, StopView, FrameAck, PickRequest, PhotosAtRequest, ProfileRequest, VolumeRequest, ErrorMapRequest, TrustMapRequest, CancelRequest>;
 
 // A message that is not allowed; what() names the field and the allowed values, and never repeats more than 40 characters of the client's text.
 class BadMessage : public std::runtime_error {

@@ -102,6 +102,15 @@ std::string VolumeText(uint32_t id, const VolumeResult& result) {
                {"base_mean_m", result.base_mean_m}});
 }
 
+std::string TrustMapText(uint32_t id, const TrustMapResult& result) {
+  return Dump({{"type", "trust_map"},
+               {"id", id},
+               {"url", result.url},
+               {"min", ListOf(result.min_enu)},
+               {"max", ListOf(result.max_enu)},
+               {"scale", result.scale}});
+}
+
 std::string ErrorMapText(uint32_t id, const ErrorMapResult& result) {
   return Dump({{"type", "error_map"},
                {"id", id},

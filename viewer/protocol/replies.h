@@ -74,6 +74,13 @@ struct ErrorMapResult {
   int photos = 0;      // that it was made from
   int of_photos = 0;   // held out
 };
+// {"type":"trust_map","id":..,"url":..,"min":[x,y],"max":[x,y],"scale":..}
+struct TrustMapResult {
+  std::string url;  // below /data/
+  Eigen::Vector2d min_enu = Eigen::Vector2d::Zero(), max_enu = Eigen::Vector2d::Zero();
+  double scale = 0.0;  // error to expect (trust::TrustPicture) that has the last colour of the ramp
+};
+std::string TrustMapText(uint32_t id, const TrustMapResult& result);
 // {"type":"error_map","id":..,"url":..,"min":[x,y],"max":[x,y],"scale":..,"photos":..,"of_photos":..}
 std::string ErrorMapText(uint32_t id, const ErrorMapResult& result);
 

@@ -8,6 +8,7 @@
 
 #include "core/render/ray.h"
 #include "core/survey/survey.h"
+#include "core/trust/trust.h"
 #include "viewer/protocol/messages.h"
 
 namespace skyquilt::viewer {
@@ -50,6 +51,10 @@ using PublishPicture = std::function<std::string(std::string png)>;
 using PhotoCaster = std::function<void(int photo, std::span<const render::Ray>, std::span<render::RayColor>)>;
 std::unique_ptr<Query> MakeErrorMap(const ErrorMapRequest& request, std::shared_ptr<const survey::Survey> survey, PhotoCaster photo_caster,
                                     PublishPicture publish);
+
+// The errors to expect of the surfaces that are seen from above, at most MeanMap::kMaxSide cells along each side. Throws BadMessage without a picture to
+// publish.
+std::unique_ptr<Query> MakeTrustMap(const TrustMapRequest& request, trust::Trust trust, PublishPicture publish);
 
 // Depth spread of a rendered ray: one standard deviation along the ray, metres; NaN without a surface. The depths where the transmittance falls below
 // .85 and .15 are the +-1.04 sigma of a normal distribution.

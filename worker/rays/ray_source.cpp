@@ -214,6 +214,7 @@ bool RaySource::RayOf(int photo, int x, int y, int level, bool empty, PixelRay* 
   const auto index = static_cast<size_t>(photo);
   const int size = 1 << level;
   if (rejected_ != nullptr && ShowsRejected(photo, x, y, size)) return false;
+  if (left_out_.Touch(index, x, y, size)) return false;
   if (level == 0) {
     const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(pixels_.Width(index)) + static_cast<size_t>(x);
     uint8_t rgb[3];

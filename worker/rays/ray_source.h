@@ -1,6 +1,6 @@
 // Draws training rays. Photos are cut into tiles, and a field is given the tiles it should learn from, so that a block trains only on pixels that
 // show it. Drawing depends only on the random generator given to it, so there is no state to save. Thread-safe except for UpdateExposures,
-// SetRejected and SetTiles.
+// SetRejected, SetLeftOut and SetTiles.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,6 +16,7 @@
 #include "core/camera/pixel_pitch.h"
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
+#include "core/trust/left_out_tiles.h"
 #include "worker/rays/photo_pyramid.h"
 #include "worker/rays/photo_segments.h"
 
@@ -65,6 +66,8 @@ class RaySource {
 
   // No ray is drawn of these pixels, nor of squares that show one; null: of all. They must outlive the source.
   void SetRejected(const RejectedPixels* rejected) { rejected_ = rejected; }
+  // Nor of these tiles, nor of squares that touch one.
+  void SetLeftOut(const trust::LeftOutTiles& tiles) { left_out_ = tiles; }
 
   // Sets the tiles to draw from: `empty_share` of the rays come from `empty` tiles (PixelRay::empty is then true), the others from `inside` tiles.
   // All tiles of a list are equally likely.
@@ -107,6 +110,7 @@ class RaySource {
   const image::PixelCache& pixels_;
   const brightness::Response& response_;
   const RejectedPixels* rejected_ = nullptr;
+  trust::LeftOutTiles left_out_;
   std::vector<camera::Camera> cameras_;                         // per photo, at cached size
   std::vector<camera::PixelPitch> pitches_;                     // of the different ones of them
   std::vector<camera::Lens> lenses_;                            // of the same

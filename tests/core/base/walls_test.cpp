@@ -48,6 +48,8 @@ const Arrows& AllowedIncludes() {
         {"core/scene",
          {"core/render", "core/field", "core/encoding", "core/brightness", "core/camera", "core/geo", "core/linear", "core/checkpoint", "core/image",
           "core/base"}},
+        {"core/trust",
+         {"core/render", "core/config", "core/checkpoint", "core/image", "core/linear", "core/base"}},
         {"core/metrics", {"core/network", "core/image", "core/base"}},
         {"core/gis", {"core/geo", "core/image", "core/base"}},
     };
@@ -83,13 +85,14 @@ const std::map<std::string, InnerRoom>& InnerRooms() {
         {}}},
       {"evaluate",
        {{
-            {"photos", {}},
+            {"trust", {}},
+            {"photos", {"trust"}},
             {"surface", {"photos"}},
             {"buildings", {"surface"}},
             {"control", {"photos"}},
             {"ortho", {"surface"}},
-            {"metrics", {"photos", "surface", "buildings", "control", "ortho"}},
-            {"page", {"photos", "surface", "buildings", "control", "ortho", "metrics"}},
+            {"metrics", {"photos", "surface", "buildings", "control", "ortho", "trust"}},
+            {"page", {"photos", "surface", "buildings", "control", "ortho", "metrics", "trust"}},
         },
         {"evaluate/evaluate_input.h", "evaluate/evaluate_options.h", "evaluate/json_members.h", "evaluate/measured.h"}}},
   };

@@ -61,6 +61,7 @@ TEST(ClientMessages, KeepWhatTheTextSays) {
       {"plane", VolumeBase::kPlane}, {"lowest", VolumeBase::kLowest}, {"height", VolumeBase::kHeight}, {"before", VolumeBase::kBefore}};
   for (const auto& [name, base] : bases)
     EXPECT_EQ(Parsed<VolumeRequest>(With(kVolumeSample, "\"height\"", "\"" + std::string(name) + "\"")).base, base);
+  EXPECT_EQ(Parsed<TrustMapRequest>(R"({"type":"trust_map","id":11})").id, 11U);
   EXPECT_EQ(Parsed<ErrorMapRequest>(R"({"type":"error_map","id":10})").id, 10U);
   EXPECT_EQ(Parsed<CancelRequest>(R"({"type":"cancel","id":11})").id, 11U);
 }

@@ -84,6 +84,9 @@ TEST(Replies, AnswerTheOtherQuestions) {
                                                           {"net_m3", 2.0},
                                                           {"sigma_m3", nullptr},
                                                           {"base_mean_m", -4.0}}));
+  const TrustMapResult trust{.url = "pictures/2.png", .min_enu = {-1, -2}, .max_enu = {3, 4}, .scale = 0.25};
+  EXPECT_EQ(base::ParseJson(TrustMapText(9, trust)),
+            json({{"type", "trust_map"}, {"id", 9}, {"url", "pictures/2.png"}, {"min", {-1.0, -2.0}}, {"max", {3.0, 4.0}}, {"scale", 0.25}}));
   const ErrorMapResult map{.url = "pictures/1.png", .min_enu = {-1, -2}, .max_enu = {3, 4}, .scale = 0.1, .photos = 6, .of_photos = 7};
   EXPECT_EQ(base::ParseJson(ErrorMapText(8, map)), json({{"type", "error_map"},
                                                          {"id", 8},

@@ -25,6 +25,7 @@ inline std::vector<std::string> SampleMessages() {
           kVolumeSample,
           R"({"type":"volume","id":6,"project":"main","polygon":[[0,0],[10,0],[10,8.5]],"base":"before"})",
           R"({"type":"error_map","id":10})",
+          R"({"type":"trust_map","id":11})",
           R"({"type":"cancel","id":10})"};
 }
 

@@ -2,7 +2,7 @@
 import { StrictMode } from "react";
 import { createRoot, type Root } from "react-dom/client";
 import type { AppContext } from "../panels/context.js";
-import { showErrorMap } from "../panels/layers/error_map.js";
+import { switchLayer } from "../panels/layers/switch_layer.js";
 import { AppView } from "../panels/shell/app_view.js";
 import { addViewCommands } from "../panels/shell/view_commands.js";
 import { assetUrl, uploadAsset } from "../protocol/assets_client.js";
@@ -53,7 +53,7 @@ async function start(root: Root, container: HTMLElement): Promise<void> {
   store.subscribe(
     ({ play, layers, errorMap }) => play !== null && layers.errorMap && errorMap === null,
     (wanted) => {
-      if (wanted) void showErrorMap(context, true);
+      if (wanted) void switchLayer(context, "errorMap", true);
     },
   );
   keepBuildings(store, project, loadBuildings);

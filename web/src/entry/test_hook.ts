@@ -8,6 +8,7 @@ import type { Link } from "../protocol/link_api.js";
 import type { Ray } from "../scene/scene_api.js";
 import type { SceneThing } from "../scene/thing.js";
 import type { AppState, CameraPose, Enu, Layers, SurfacePoint } from "../state/app_state.js";
+import { withLayer } from "../state/layers.js";
 import { type SettledFrame, samePose, type ViewLog } from "./view_log.js";
 
 export interface TestHook {
@@ -127,7 +128,7 @@ export function installTestHook(context: HookContext, log: ViewLog): void {
       }),
     visibleTexts: () => scene.visibleTexts(),
     chosenThings: () => chosen,
-    setLayer: (name, on) => store.update((state) => ({ layers: { ...state.layers, [name]: on } })),
+    setLayer: (name, on) => store.update(({ layers }) => ({ layers: withLayer(layers, name, on) })),
     run: (id) => commands.run(id),
     openPhoto: async (index) => {
       const photo = project.photos[index];

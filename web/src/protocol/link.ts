@@ -63,6 +63,7 @@ export function connect(options: { readonly url?: string } = {}): Link {
     profile: (from, to, samples, project) => core.profile(from, to, samples, project),
     volume: (polygon, base, baseHeightM, project) => core.volume(polygon, base, baseHeightM, project),
     errorMap: () => core.errorMap(),
+    trustMap: () => core.trustMap(),
     cancel: (id) => core.cancel(id),
     statistics: () => core.statistics(),
     close: () => core.close(),

@@ -1,6 +1,6 @@
 // The connection to the engine, as scene, tools and panels see it.
 import type { Quat, Vec2, Vec3 } from "../base/vec.js";
-import type { EngineStatus, Enu, ErrorMap, PhotoSight, Survey, VolumeBase } from "../state/app_state.js";
+import type { DrapedMap, EngineStatus, Enu, ErrorMap, PhotoSight, Survey, VolumeBase } from "../state/app_state.js";
 import type { PickedText as Picked, ProfileText as ProfileReply, VolumeText as VolumeReply } from "./replies.js";
 
 export type Which = Survey;
@@ -66,6 +66,7 @@ export interface Link {
   profile(from: Vec2, to: Vec2, samples: number, project?: Which): Promise<ProfileReply>;
   volume(polygon: readonly Vec2[], base: VolumeBase, baseHeightM: number, project?: Which): Promise<VolumeReply>;
   errorMap(): Promise<ErrorMap>;
+  trustMap(): Promise<DrapedMap>;
   /** Ends the request of this id (as onProgress names it); it rejects with an AbortError. */
   cancel(id: number): void;
   /** Counts for tests and the status line. */

@@ -4,7 +4,7 @@ import { AbortError, errorText } from "../base/abort.js";
 import { asObject, parseJson } from "../base/check.js";
 import { Emitter } from "../base/emitter.js";
 import type { Vec2, Vec3 } from "../base/vec.js";
-import type { ErrorMap, VolumeBase } from "../state/app_state.js";
+import type { DrapedMap, ErrorMap, VolumeBase } from "../state/app_state.js";
 import { type FrameBytes, inflateDepth, parseFrame } from "./frame.js";
 import { FrameOrder } from "./frame_order.js";
 import type { DecodedFrame, LinkStatus, Platform, Socket, SocketEvents } from "./link_platform.js";
@@ -19,6 +19,7 @@ import {
   profileText,
   type RayFields,
   stopText,
+  trustMapText,
   type ViewFields,
   viewPhotoText,
   viewText,
@@ -41,7 +42,7 @@ const LONGEST_WAIT_MS = 8000;
 const WELCOME_MS = 10_000;
 const PICK_MS = 30_000;
 const QUERY_MS = 120_000;
-const LONG_QUERY_MS = 600_000;
+const LONG_QUERY = { timeoutMs: 600_000, shown: true } as const;
 
 export class LinkCore<Bitmap extends { close(): void }> {
   private readonly platform: Platform<Bitmap>;
@@ -186,6 +187,7 @@ export class LinkCore<Bitmap extends { close(): void }> {
       case "profile":
       case "volume":
       case "error_map":
+      case "trust_map":
         if (!this.requests.answer(message.id, message.type, message.value))
           this.bad(`nobody asked for "${message.type}"`);
         return;
@@ -361,17 +363,15 @@ export class LinkCore<Bitmap extends { close(): void }> {
     project: "main" | "before" = "main",
   ): Promise<VolumeText> {
     const text = (id: number) => volumeText(id, polygon, base, baseHeightM, project);
-    return this.request({ what: "Volume", answer: "volume", timeoutMs: LONG_QUERY_MS, shown: true, text });
+    return this.request({ ...LONG_QUERY, what: "Volume", answer: "volume", text });
   }
 
   errorMap(): Promise<ErrorMap> {
-    return this.request({
-      what: "Error map",
-      answer: "error_map",
-      timeoutMs: LONG_QUERY_MS,
-      shown: true,
-      text: errorMapText,
-    });
+    return this.request({ ...LONG_QUERY, what: "Error map", answer: "error_map", text: errorMapText });
+  }
+
+  trustMap(): Promise<DrapedMap> {
+    return this.request({ ...LONG_QUERY, what: "Error to expect", answer: "trust_map", text: trustMapText });
   }
 
   cancel(id: number): void {

@@ -160,6 +160,10 @@ export function errorMapText(id: number): string {
   return text({ type: "error_map", id: integer(id, 0, U32, "id") });
 }
 
+export function trustMapText(id: number): string {
+  return text({ type: "trust_map", id: integer(id, 0, U32, "id") });
+}
+
 export function cancelText(id: number): string {
   return text({ type: "cancel", id: integer(id, 0, U32, "id") });
 }

@@ -59,6 +59,7 @@ export function openOfflineTour({ files, stops, pictures, failed }: OfflineTourO
     profile: unable,
     volume: unable,
     errorMap: unable,
+    trustMap: unable,
     cancel: () => {},
     statistics: () => core.statistics(),
     close: () => core.close(),

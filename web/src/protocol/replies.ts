@@ -16,7 +16,7 @@ import {
   parseJson,
 } from "../base/check.js";
 import type { Vec3 } from "../base/vec.js";
-import type { ErrorMap, PhotoSight } from "../state/app_state.js";
+import type { DrapedMap, ErrorMap, PhotoSight } from "../state/app_state.js";
 
 export interface EngineText {
   readonly ready: boolean;
@@ -63,6 +63,7 @@ export type ServerText =
   | { readonly type: "profile"; readonly id: number; readonly value: ProfileText }
   | { readonly type: "volume"; readonly id: number; readonly value: VolumeText }
   | { readonly type: "error_map"; readonly id: number; readonly value: ErrorMap }
+  | { readonly type: "trust_map"; readonly id: number; readonly value: DrapedMap }
   | { readonly type: "progress"; readonly id: number; readonly fraction: number }
   | { readonly type: "error"; readonly id: number | null; readonly message: string };
 
@@ -129,12 +130,18 @@ function readVolume(o: JsonObject): VolumeText {
   };
 }
 
-function readErrorMap(o: JsonObject): ErrorMap {
+function readDrapedMap(o: JsonObject): DrapedMap {
   return {
     url: dataUrl(o.url, "url", "/data/"),
     min: asVec2(o.min, "min"),
     max: asVec2(o.max, "max"),
     scale: asNumber(o.scale, "scale"),
+  };
+}
+
+function readErrorMap(o: JsonObject): ErrorMap {
+  return {
+    ...readDrapedMap(o),
     photos: asInteger(o.photos, "photos", 0),
     ofPhotos: asInteger(o.of_photos, "of_photos", 0),
   };
@@ -176,6 +183,8 @@ export function readServerText(text: string): ServerText | null {
       return { type, id: id(), value: readVolume(o) };
     case "error_map":
       return { type, id: id(), value: readErrorMap(o) };
+    case "trust_map":
+      return { type, id: id(), value: readDrapedMap(o) };
     case "progress":
       return { type, id: id(), fraction: Math.min(1, Math.max(0, asNumber(o.fraction, "fraction"))) };
     case "error":

@@ -12,7 +12,7 @@ import {
   Vector3,
 } from "three";
 
-/** Clip box and error map act on the point in the scene that a pixel shows. */
+/** Clip box and map of errors act on the point in the scene that a pixel shows. */
 const POINT_FUNCTIONS = `
 #ifdef CLIP
 uniform vec3 clipMin;

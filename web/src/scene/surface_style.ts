@@ -1,5 +1,5 @@
-// How surfaces are drawn: their picture as it is, without light and without colour conversion, clipped by the clip box, and with the error map laid
-// over it from above when that is on.
+// How surfaces are drawn: their picture as it is, without light and without colour conversion, clipped by the clip box, and with a map of errors
+// laid over it from above when one is on.
 import { FrontSide, LinearFilter, Matrix4, MeshBasicMaterial, type Plane, Texture, Vector2 } from "three";
 
 export interface Drape {

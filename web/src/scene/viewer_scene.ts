@@ -5,6 +5,7 @@ import type { Vec2, Vec3 } from "../base/vec.js";
 import { add, scale } from "../base/vec_math.js";
 import type { Link } from "../protocol/link_api.js";
 import type { AppState, CameraPose, Enu, SurfacePoint } from "../state/app_state.js";
+import { shownMap } from "../state/layers.js";
 import { addNotice } from "../state/notices.js";
 import type { Project } from "../state/project.js";
 import type { Store } from "../state/store.js";
@@ -13,10 +14,10 @@ import { watchBuildings } from "./buildings_layer.js";
 import { CameraMoves } from "./camera_moves.js";
 import { CameraRig } from "./camera_rig.js";
 import { watchContext } from "./context_loss.js";
-import { ErrorDrape } from "./error_drape.js";
 import { ExactControl } from "./exact_control.js";
 import { obliquePose, topPose } from "./framing.js";
 import { fetchBytes, type LoadBytes } from "./load_bytes.js";
+import { MapDrape } from "./map_drape.js";
 import { MiddleCross } from "./middle_cross.js";
 import { Navigation } from "./navigation.js";
 import { Overlay } from "./overlay.js";
@@ -63,7 +64,7 @@ class ViewerScene implements SceneApi {
   private readonly exact: ExactControl;
   private readonly overlay: Overlay;
   private readonly readout: ReadoutWriter;
-  private readonly drape: ErrorDrape;
+  private readonly drape: MapDrape;
   private readonly places: Places;
   private readonly things: SceneThings;
   private readonly photosBox: Box;
@@ -139,7 +140,7 @@ class ViewerScene implements SceneApi {
     );
     this.readout = d.own(new ReadoutWriter(store, systemClock, () => this.places.readout(this.meter.fps)));
     this.drape = d.own(
-      new ErrorDrape(world, {
+      new MapDrape(world, {
         changed: (drape) => {
           this.stage.setDrape(drape);
           invalidate();
@@ -336,12 +337,7 @@ class ViewerScene implements SceneApi {
         },
       ),
     );
-    d.add(
-      store.subscribe(
-        (state) => (state.layers.errorMap ? state.errorMap : null),
-        (map) => this.drape.show(map),
-      ),
-    );
+    d.add(store.subscribe(shownMap, (map) => this.drape.show(map)));
     d.add(watchBuildings(store, stage.buildings, invalidate));
     d.add(store.subscribe((state) => state.swipe, invalidate));
     d.add(
@@ -361,7 +357,7 @@ class ViewerScene implements SceneApi {
     const state = store.get();
     stage.extras.show(state.layers);
     stage.setClip(state.clip);
-    this.drape.show(state.layers.errorMap ? state.errorMap : null);
+    this.drape.show(shownMap(state));
   }
 }
 

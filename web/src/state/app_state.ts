@@ -121,7 +121,9 @@ export interface Layers {
   readonly cameras: boolean;
   readonly points: boolean;
   readonly contours: boolean;
+  /** Of `errorMap` and `trust` at most one is on (layers.ts). */
   readonly errorMap: boolean;
+  readonly trust: boolean;
   readonly measurements: boolean;
   readonly controlPoints: boolean;
   readonly cameraPath: boolean;
@@ -170,11 +172,16 @@ export interface PhotoCompare {
   readonly split: number;
 }
 
-export interface ErrorMap {
+/** A picture that is laid over the ground between two corners; its colours go from 0 to `scale` (display values, 0 to 1). */
+export interface DrapedMap {
   readonly url: string;
   readonly min: Vec2;
   readonly max: Vec2;
   readonly scale: number;
+}
+
+/** The error that held-out photos show. */
+export interface ErrorMap extends DrapedMap {
   readonly photos: number;
   readonly ofPhotos: number;
 }
@@ -252,6 +259,8 @@ export interface AppState {
   } | null;
   readonly compare: PhotoCompare | null;
   readonly errorMap: ErrorMap | null;
+  /** The error to expect, from how well training photos agree with the field. */
+  readonly trust: DrapedMap | null;
   readonly engine: EngineStatus;
   readonly readout: Readout;
   readonly notices: readonly Notice[];

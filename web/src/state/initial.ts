@@ -47,6 +47,7 @@ export function initialState(project: Project, rights: Rights = USUAL_RIGHTS): A
       points: bare,
       contours: false,
       errorMap: false,
+      trust: false,
       measurements: true,
       controlPoints: true,
       cameraPath: true,
@@ -57,6 +58,7 @@ export function initialState(project: Project, rights: Rights = USUAL_RIGHTS): A
     sights: null,
     compare: null,
     errorMap: null,
+    trust: null,
     engine: {
       connected: false,
       ready: false,

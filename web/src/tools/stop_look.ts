@@ -1,7 +1,8 @@
 // How the view looks at a stop: layers, brightness and measurements as its author wants them. At the end all is as it was before.
 import type { Layers } from "../state/app_state.js";
+import { withLayer } from "../state/layers.js";
 import type { Store } from "../state/store.js";
-import type { Stop } from "../tour/types.js";
+import { LAYER_NAMES, type Stop } from "../tour/types.js";
 
 export class StopLook {
   private readonly store: Store;
@@ -23,14 +24,17 @@ export class StopLook {
     const own = stop.layers ?? {};
     // A stop that names the layer and no measurements means all of them.
     const all = stop.measurements.length === 0 && own.measurements === true;
-    const layers: Layers = {
+    let layers: Layers = {
       ...before.layers,
       // The author's aids are not for visitors.
       cameraPath: false,
       things: true,
       measurements: all || stop.measurements.length > 0,
-      ...own,
     };
+    for (const name of LAYER_NAMES) {
+      const on = own[name];
+      if (on !== undefined) layers = withLayer(layers, name, on);
+    }
     store.set({
       layers,
       exposureStops: stop.exposureStops ?? before.exposureStops,

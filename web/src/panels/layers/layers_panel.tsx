@@ -1,14 +1,15 @@
 // What is drawn: layers, the earlier project, the clip box; and what the project lacks.
 import type { ReactElement, ReactNode } from "react";
 import type { AppState, Layers } from "../../state/app_state.js";
+import type { MapLayer } from "../../state/layers.js";
 import type { Project } from "../../state/project.js";
 import { useApp, useStore } from "../use_store.js";
 import { MissingList } from "../widgets/missing_list.js";
 import { BlockList } from "./block_list.js";
 import { ClipControls } from "./clip_controls.js";
-import { ErrorLegend } from "./error_legend.js";
-import { showErrorMap } from "./error_map.js";
+import { MapLegend } from "./map_legend.js";
 import { SwipeControls } from "./swipe_controls.js";
+import { switchLayer } from "./switch_layer.js";
 
 type LayerName = keyof Layers;
 
@@ -29,7 +30,10 @@ export function LayersPanel(): ReactElement {
         <LayerRow name="contours" />
         <LayerRow name="buildings" />
         <LayerRow name="errorMap">
-          <ErrorLegend />
+          <MapLegend name="errorMap" />
+        </LayerRow>
+        <LayerRow name="trust">
+          <MapLegend name="trust" />
         </LayerRow>
       </section>
       <section>
@@ -55,10 +59,6 @@ function LayerRow({ name, children }: { readonly name: LayerName; readonly child
   const on = useStore((state) => state.layers[name]);
   const detail = useStore((state) => layerText(name, project, state).detail);
   const { label, available } = layerText(name, project, store.get());
-  const change = (next: boolean): void => {
-    if (name === "errorMap") void showErrorMap(context, next);
-    else store.update((state) => ({ layers: { ...state.layers, [name]: next } }));
-  };
   return (
     <div className={available ? "layer" : "layer unavailable"}>
       <label className="layer-row">
@@ -67,7 +67,7 @@ function LayerRow({ name, children }: { readonly name: LayerName; readonly child
           className="switch"
           checked={on && available}
           disabled={!available}
-          onChange={(event) => change(event.currentTarget.checked)}
+          onChange={(event) => void switchLayer(context, name, event.currentTarget.checked)}
         />
         <span className="layer-label">{label}</span>
         <span className="layer-detail">{detail}</span>
@@ -108,6 +108,8 @@ function layerText(name: LayerName, project: Project, state: AppState): LayerTex
       return buildingsText(project, state);
     case "errorMap":
       return errorMapText(project, state);
+    case "trust":
+      return trustText(project, state);
     case "measurements":
       return { label: "Measurements", detail: String(state.documents.measurements.length), available: true };
     case "controlPoints":
@@ -147,8 +149,17 @@ function errorMapText(project: Project, state: AppState): LayerText {
   if (project.scene === null) return { label, detail: "no field", available: false };
   const heldOut = project.photos.filter((photo) => photo.isTest).length;
   if (heldOut === 0) return { label, detail: "no held-out photos", available: false };
-  const making = state.layers.errorMap && state.errorMap === null;
-  return { label, detail: making ? "being made …" : counted(heldOut, "photo"), available: true };
+  return { label, detail: beingMade(state, "errorMap") ?? counted(heldOut, "photo"), available: true };
+}
+
+function trustText(project: Project, state: AppState): LayerText {
+  const label = "Error to expect";
+  if (project.scene === null) return { label, detail: "no field", available: false };
+  return { label, detail: beingMade(state, "trust") ?? "", available: true };
+}
+
+function beingMade(state: AppState, name: MapLayer): string | null {
+  return state.layers[name] && state[name] === null ? "being made …" : null;
 }
 
 function counted(count: number, noun: string): string {

@@ -3,7 +3,7 @@
 import type { AppState, Layers, PanelName } from "../../state/app_state.js";
 import { addErrorNotice, addNotice } from "../../state/notices.js";
 import type { AppContext } from "../context.js";
-import { showErrorMap } from "../layers/error_map.js";
+import { switchLayer } from "../layers/switch_layer.js";
 import { PANELS } from "./panel_names.js";
 import { addScreenCommand } from "./screen_command.js";
 import { turnNorthUp } from "./turn_north.js";
@@ -19,6 +19,7 @@ const LAYERS: readonly { readonly name: keyof Layers; readonly label: string; re
   { name: "blocks", label: "Blocks", keys: ["b"] },
   { name: "contours", label: "Contours", keys: [] },
   { name: "errorMap", label: "Held-out error", keys: [] },
+  { name: "trust", label: "Error to expect", keys: [] },
   { name: "measurements", label: "Measurements", keys: [] },
 ];
 const PANEL_KEYS: Readonly<Partial<Record<PanelName, readonly string[]>>> = { tour: ["u"] };
@@ -79,9 +80,7 @@ async function toggleLayer(context: ViewContext, name: keyof Layers): Promise<vo
     addNotice(store, "info", "There are no buildings to show.");
     return;
   }
-  const on = !store.get().layers[name];
-  if (name === "errorMap") await showErrorMap(context, on);
-  else store.update((state) => ({ layers: { ...state.layers, [name]: on } }));
+  await switchLayer(context, name, !store.get().layers[name]);
 }
 
 async function savePicture({ scene, store, project }: ViewContext): Promise<void> {

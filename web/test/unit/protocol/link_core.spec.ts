@@ -272,6 +272,21 @@ test("progress is told from start to end, and lengthens the time limit", async (
   assert.equal(bench.clock.waiting, 0, "no timer is left");
 });
 
+test("the map of the error to expect names no photos, and a refusal is told as it is", async () => {
+  const bench = new Bench();
+  bench.welcome();
+  const [map, refused] = [bench.link.trustMap(), bench.link.trustMap()];
+  const [a, b] = bench.sent("trust_map").map(({ id }) => Number(id));
+  const answer = { type: "trust_map", id: a, url: "pictures/2.png", min: [-1, -2], max: [3, 4], scale: 0.25 };
+  bench.text(answer);
+  bench.text({ type: "error", id: b, message: "this project has no trust.h5" });
+  assert.deepEqual(await map, { url: "/data/pictures/2.png", min: [-1, -2], max: [3, 4], scale: 0.25 });
+  await assert.rejects(refused, /^Error: this project has no trust.h5$/);
+  const unreadable = bench.link.trustMap();
+  bench.text({ ...answer, id: bench.sent("trust_map")[2]?.id, url: "https://elsewhere/2.png" });
+  await assert.rejects(unreadable, /url: a path below \/data\/ expected/);
+});
+
 test("without an answer a request ends, and the engine is told", async () => {
   const bench = new Bench();
   bench.welcome();

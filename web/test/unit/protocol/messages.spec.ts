@@ -91,6 +91,7 @@ test("messages have exactly the keys of docs/viewer_protocol.md", () => {
       },
     ],
     [messages.errorMapText(7), { type: "error_map", id: 7 }],
+    [messages.trustMapText(9), { type: "trust_map", id: 9 }],
     [messages.cancelText(8), { type: "cancel", id: 8 }],
   ];
   for (const [text, expected] of cases) assert.deepEqual(JSON.parse(text), expected);

@@ -49,6 +49,7 @@ export class FakeEngine {
       onEngine: never,
       onProgress: never,
       errorMap: never,
+      trustMap: never,
       cancel: never,
       statistics: never,
       close: never,

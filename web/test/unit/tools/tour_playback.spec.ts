@@ -226,6 +226,16 @@ test("a stop's layers, brightness and measurements hold there, and all is as bef
   );
 });
 
+test("a stop that shows the held-out error takes the place of the error to expect", () => {
+  const s = stage(changeStop(rowOfStops(), "stop-1", { layers: { errorMap: true } }));
+  s.store.update(({ layers }) => ({ layers: { ...layers, trust: true } }));
+  s.playback.play();
+  const maps = () => [s.store.get().layers.errorMap, s.store.get().layers.trust];
+  assert.deepEqual(maps(), [true, false]);
+  s.playback.leave();
+  assert.deepEqual(maps(), [false, true]);
+});
+
 test("leaving on the way ends the motion, and an empty tour does not begin", async () => {
   const s = stage(rowOfStops());
   s.playback.play();

@@ -3,11 +3,14 @@ import test from "node:test";
 import type { AppContext } from "../../../../src/panels/context.js";
 import { groupCommands } from "../../../../src/panels/shell/command_groups.js";
 import { addViewCommands } from "../../../../src/panels/shell/view_commands.js";
+import type { DrapedMap } from "../../../../src/state/app_state.js";
 import { CommandTable } from "../../../../src/state/commands.js";
 import { initialState } from "../../../../src/state/initial.js";
 import type { Project } from "../../../../src/state/project.js";
 import { Store } from "../../../../src/state/store.js";
 import { addToolCommands } from "../../../../src/tools/tool_commands.js";
+
+const TRUST: DrapedMap = { url: "/data/pictures/2.png", min: [0, 0], max: [1, 1], scale: 0.25 };
 
 function application() {
   // Commands need little of them; what is missing would fail loudly.
@@ -19,6 +22,10 @@ function application() {
     errorMap: () => {
       asked.push("errorMap");
       return Promise.reject(new Error("no held-out photos"));
+    },
+    trustMap: () => {
+      asked.push("trust");
+      return Promise.resolve(TRUST);
     },
   };
   const context = { project, store, commands, scene: {}, link } as unknown as AppContext;
@@ -55,6 +62,23 @@ test("the error map is asked for once; without an answer the layer goes off agai
   assert.deepEqual(asked, ["errorMap"]);
   assert.equal(store.get().layers.errorMap, false);
   assert.match(store.get().notices[0]?.text ?? "", /no held-out photos/);
+});
+
+test("of the maps of errors one is on at a time, and one that has been made is not asked for again", async () => {
+  const { store, commands, asked } = application();
+  const on = () => [store.get().layers.errorMap, store.get().layers.trust];
+  const failing = commands.run("layer.errorMap");
+  assert.deepEqual(on(), [true, false]);
+  const made = commands.run("layer.trust");
+  assert.deepEqual(on(), [false, true]);
+  await Promise.all([failing, made]);
+  assert.deepEqual(on(), [false, true], "the other one's failure does not switch it off");
+  assert.equal(store.get().trust, TRUST);
+  await commands.run("layer.trust");
+  assert.deepEqual(on(), [false, false]);
+  await commands.run("layer.trust");
+  assert.deepEqual(on(), [false, true]);
+  assert.deepEqual(asked, ["errorMap", "trust"]);
 });
 
 test("commands are grouped by their ids and none is lost", () => {

@@ -42,6 +42,7 @@ test("the engine's state in words", () => {
     points: false,
     contours: false,
     errorMap: false,
+    trust: false,
     measurements: true,
     controlPoints: true,
     cameraPath: true,

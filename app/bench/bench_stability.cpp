@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "app/commands/bench_commands.h"
+#include "app/bench/bench_commands.h"
 #include "app/commands/command.h"
 #include "app/settings/duration.h"
 #include "bench/study/stability_bench.h"

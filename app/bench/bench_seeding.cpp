@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/commands/bench_commands.h"
+#include "app/bench/bench_commands.h"
 #include "bench/study/seeding_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"

@@ -1,6 +1,7 @@
-// The map of the held-out error as a texture that is laid over the surface from above.
+// The map of errors that is on, as a texture that is laid over the surface from above.
 import { type Texture, Vector2 } from "three";
-import type { ErrorMap } from "../state/app_state.js";
+import { errorText } from "../base/abort.js";
+import type { DrapedMap } from "../state/app_state.js";
 import { type Drape, textureOf } from "./surface_style.js";
 import type { World } from "./world.js";
 
@@ -9,11 +10,11 @@ export interface DrapeEvents {
   failed(text: string): void;
 }
 
-export class ErrorDrape {
+export class MapDrape {
   private readonly world: World;
   private readonly events: DrapeEvents;
-  private wanted: ErrorMap | null = null;
-  private loaded: { readonly map: ErrorMap; readonly texture: Texture; readonly bitmap: ImageBitmap } | null = null;
+  private wanted: DrapedMap | null = null;
+  private loaded: { readonly map: DrapedMap; readonly texture: Texture; readonly bitmap: ImageBitmap } | null = null;
   private abort: AbortController | null = null;
 
   constructor(world: World, events: DrapeEvents) {
@@ -26,14 +27,18 @@ export class ErrorDrape {
   }
 
   /** Null: no map is shown. */
-  show(map: ErrorMap | null): void {
+  show(map: DrapedMap | null): void {
     if (map === this.wanted) return;
     this.wanted = map;
     this.abort?.abort();
     this.abort = null;
-    if (map === null) this.events.changed(null);
-    else if (this.loaded?.map.url === map.url) this.tell();
-    else void this.load(map);
+    if (map !== null && this.loaded?.map.url === map.url) {
+      this.tell();
+      return;
+    }
+    // Until another map is loaded, none is shown.
+    this.events.changed(null);
+    if (map !== null) void this.load(map);
   }
 
   dispose(): void {
@@ -43,7 +48,7 @@ export class ErrorDrape {
     this.drop();
   }
 
-  private async load(map: ErrorMap): Promise<void> {
+  private async load(map: DrapedMap): Promise<void> {
     const abort = new AbortController();
     this.abort = abort;
     try {
@@ -64,16 +69,14 @@ export class ErrorDrape {
     } catch (error) {
       if (abort.signal.aborted) return;
       this.abort = null;
-      this.events.failed(
-        `The map of the held-out error cannot be shown: ${error instanceof Error ? error.message : String(error)}`,
-      );
+      this.events.failed(`The map of errors cannot be shown: ${errorText(error)}`);
     }
   }
 
   private tell(): void {
     const { loaded, world } = this;
     if (loaded === null) return;
-    const corner = (at: ErrorMap["min"]) => new Vector2(at[0] - world.anchor[0], at[1] - world.anchor[1]);
+    const corner = (at: DrapedMap["min"]) => new Vector2(at[0] - world.anchor[0], at[1] - world.anchor[1]);
     this.events.changed({ texture: loaded.texture, min: corner(loaded.map.min), max: corner(loaded.map.max) });
   }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/commands/bench_commands.h"
+#include "app/bench/bench_commands.h"
 #include "app/settings/duration.h"
 #include "bench/study/growth_bench.h"
 #include "core/base/errors.h"

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <string>
 
-#include "app/commands/bench_commands.h"
+#include "app/bench/bench_commands.h"
 #include "app/commands/command.h"
 #include "bench/bench_page.h"
 #include "bench/kernel_bench.h"

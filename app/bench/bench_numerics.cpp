@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/commands/bench_commands.h"
+#include "app/bench/bench_commands.h"
 #include "bench/numerics/numerics_bench.h"
 #include "core/base/file.h"
 #include "core/base/random.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/commands/bench_commands.h"
+#include "app/bench/bench_commands.h"
 #include "bench/poses/poses_bench.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"

@@ -1,0 +1,23 @@
+// Options of section [trust] of the configuration: how far renderings can be trusted, place by place.
+#pragma once
+
+#include <vector>
+
+#include "core/config/options.h"
+#include "core/trust/left_out_tiles.h"
+
+namespace skyquilt::trust {
+
+struct TrustOptions {
+  double tiles = 0.01;  // 0: nothing is left out of training, and trust is not measured
+  double rays = 2e6;
+
+  LeftOutTiles LeftOut() const { return {tiles}; }
+  bool Measured() const { return tiles > 0.0; }
+
+  static std::vector<config::Field<TrustOptions>> Fields();
+  // Throws base::UsageError for values that are not allowed.
+  void Check() const;
+};
+
+}  // namespace skyquilt::trust

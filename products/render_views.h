@@ -30,8 +30,9 @@ struct ViewImages {
 };
 
 // Writes <folder>/<name>.png (colours on black) and, if chosen, <folder>/<name>_depth.tiff: float, metres along the ray (not along the optical axis)
-// to where the transmittance falls below one half, NaN where it never does; <folder>/<name>_normals.png (core/image/normal_image.h); and <folder>/<name>_trust.tiff
-// and _trust.png: the error to expect (trust::TrustPicture), as numbers and as colours up to trust::kTopError. The folder is created; existing files are replaced. Throws base::InputError when a file cannot be written, and base::Interrupted between views.
+// to where the transmittance falls below one half, NaN where it never does; <folder>/<name>_normals.png (core/image/normal_image.h); and
+// <folder>/<name>_trust.tiff and _trust.png: the error to expect (trust::TrustPicture), as numbers and as colours up to trust::kTopError. The folder
+// is created; existing files are replaced. Throws base::InputError when a file cannot be written, and base::Interrupted between views.
 RenderStats RenderViews(const ViewRenderer& renderer, const std::vector<View>& views, const std::filesystem::path& folder, const ViewImages& images,
                         base::ThreadPool& threads);
 

@@ -129,7 +129,8 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     products::LogMaps(products::MakeMapProducts(scene, asked, maps, threads, photos ? &*photos : nullptr), maps);
   }
   if (flags.TrustMap()) {
-    const std::filesystem::path map = products::WriteTrustMap(*trust, scene.info(), products::CasterOf(scene, appearance, threads), options, maps, threads);
+    const std::filesystem::path map =
+        products::WriteTrustMap(*trust, scene.info(), products::CasterOf(scene, appearance, threads), options, maps, threads);
     base::LogInfo("map of the errors to expect: {}", map.string());
   }
   if (!flags.plane.empty()) {

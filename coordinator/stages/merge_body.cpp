@@ -1,6 +1,4 @@
 // The work of stage "merge".
-#include "merge/merge.h"
-
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/stages/stage_bodies.h"
@@ -9,6 +7,7 @@
 #include "core/image/pixel_cache.h"
 #include "core/trust/trust.h"
 #include "evaluate/trust/measure_trust.h"
+#include "merge/merge.h"
 
 namespace skyquilt::coordinator {
 namespace {

@@ -10,14 +10,14 @@
 namespace skyquilt::trust {
 namespace {
 
-constexpr size_t kFewest = 100;       // pixels that a model is fitted to
-constexpr size_t kMostGroups = 32;    // of pixels whose mean error is a knot
-constexpr size_t kGroupPixels = 50;   // at least
-constexpr double kUnseenLog = -6.0;   // log residual of places that no photo shows; its own feature makes up for what is wrong with it
-constexpr float kThickest = 64.0F;    // pixels
+constexpr size_t kFewest = 100;      // pixels that a model is fitted to
+constexpr size_t kMostGroups = 32;   // of pixels whose mean error is a knot
+constexpr size_t kGroupPixels = 50;  // at least
+constexpr double kUnseenLog = -6.0;  // log residual of places that no photo shows; its own feature makes up for what is wrong with it
+constexpr float kThickest = 64.0F;   // pixels
 constexpr float kThinnest = 0.125F;
 
-constexpr double kBeyond = 0.25;      // slope of the logarithm beyond the outermost groups
+constexpr double kBeyond = 0.25;  // slope of the logarithm beyond the outermost groups
 constexpr double kLeastLog = -16.0;
 
 struct Group {
@@ -142,7 +142,9 @@ ErrorModel ErrorModel::Get(const checkpoint::ArchiveReader& reader, const std::f
   const std::vector<double> weights = reader.Doubles("error_model/weights");
   model.knots_ = reader.Doubles("error_model/knots");
   model.log_error_ = reader.Doubles("error_model/log_error");
-  const auto finite = [](const std::vector<double>& values) { return std::ranges::all_of(values, [](double value) { return std::isfinite(value); }); };
+  const auto finite = [](const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  };
   if (weights.size() != kFeatures || model.knots_.empty() || model.knots_.size() != model.log_error_.size() || !finite(weights) ||
       !finite(model.knots_) || !finite(model.log_error_) || !std::ranges::is_sorted(model.knots_)) {
     throw base::InputError(file, "is damaged: its error model is not of the form that this program writes",

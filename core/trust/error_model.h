@@ -15,10 +15,10 @@ namespace skyquilt::trust {
 
 // What is known about a rendered pixel without its photo.
 struct PixelFacts {
-  Evidence evidence;          // of the place that it shows
-  float opacity = 0.0F;       // 0 to 1
-  float spread_pixels = 0.0F; // how thick the surface is along the ray: depth_back - depth_front over the pixel's width; NaN: it has no back
-  float gradient = 0.0F;      // of the rendering: largest slope over red, green and blue, display values per pixel
+  Evidence evidence;           // of the place that it shows
+  float opacity = 0.0F;        // 0 to 1
+  float spread_pixels = 0.0F;  // how thick the surface is along the ray: depth_back - depth_front over the pixel's width; NaN: it has no back
+  float gradient = 0.0F;       // of the rendering: largest slope over red, green and blue, display values per pixel
 };
 
 class ErrorModel {

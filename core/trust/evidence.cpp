@@ -62,9 +62,8 @@ std::vector<std::pair<uint64_t, Sums>> SumsOf(const std::vector<Sighting>& sight
     SKYQUILT_CHECK(IsNear(cell), "a place far outside the scene");
     keyed.push_back({KeyOf(cell), sighting.photo, std::log(sighting.squared_error + kLeastError * kLeastError)});
   }
-  std::ranges::sort(keyed, [](const Keyed& a, const Keyed& b) {
-    return std::tie(a.key, a.photo, a.log_error) < std::tie(b.key, b.photo, b.log_error);
-  });
+  std::ranges::sort(keyed,
+                    [](const Keyed& a, const Keyed& b) { return std::tie(a.key, a.photo, a.log_error) < std::tie(b.key, b.photo, b.log_error); });
   std::vector<std::pair<uint64_t, Sums>> cells;
   int last_photo = 0;
   for (const Keyed& one : keyed) {

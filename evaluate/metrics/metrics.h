@@ -16,10 +16,10 @@
 #include "evaluate/buildings/building_scores.h"
 #include "evaluate/metrics/run_times.h"
 #include "evaluate/ortho/ortho_scores.h"
-#include "evaluate/trust/sparsification.h"
 #include "evaluate/photos/kept_points.h"
 #include "evaluate/photos/photo_score.h"
 #include "evaluate/surface/surface_scores.h"
+#include "evaluate/trust/sparsification.h"
 
 namespace skyquilt::evaluate::metrics {
 

@@ -94,10 +94,11 @@ void AddTrustRows(const trust::TrustScores& trust, FigureTable* table) {
   table->Row("Error found", FormatFixed(trust.found_rms, 3), "The same of the held-out photos. Near the expected one is good.");
   table->Row("Least over most trusted", FormatFixed(trust.least_over_most, 1),
              "Mean squared error of the tenth of the pixels that is trusted least, over that of the tenth that is trusted most.");
-  table->Row("AUSE", FormatFixed(trust.ause, 3),
-             fmt::format("How far the order of trust is from the true order of errors: 0 is the same. By the number of photos {}, by the gradient of the "
-                         "picture {}, by opacity {}.",
-                         FormatFixed(trust.ause_photos, 3), FormatFixed(trust.ause_gradient, 3), FormatFixed(trust.ause_opacity, 3)));
+  table->Row(
+      "AUSE", FormatFixed(trust.ause, 3),
+      fmt::format("How far the order of trust is from the true order of errors: 0 is the same. By the number of photos {}, by the gradient of the "
+                  "picture {}, by opacity {}.",
+                  FormatFixed(trust.ause_photos, 3), FormatFixed(trust.ause_gradient, 3), FormatFixed(trust.ause_opacity, 3)));
 }
 
 void AddFlightRows(const metrics::Metrics& metrics, FigureTable* table) {

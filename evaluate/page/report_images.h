@@ -15,12 +15,12 @@ namespace skyquilt::evaluate::page {
 struct PhotoPixels {
   const image::Image8* photo = nullptr;
   const image::Image8* render = nullptr;
-  const image::ImageF* depth = nullptr;         // metres along z of the camera, NaN where there is none
-  std::span<const uint8_t> scored;              // row-major, 0 = masked or not covered
-  const image::ImageF* normals = nullptr;       // of the rendering, ENU; null: not shown
-  const image::ImageF* true_normals = nullptr;  // null: not shown
+  const image::ImageF* depth = nullptr;           // metres along z of the camera, NaN where there is none
+  std::span<const uint8_t> scored;                // row-major, 0 = masked or not covered
+  const image::ImageF* normals = nullptr;         // of the rendering, ENU; null: not shown
+  const image::ImageF* true_normals = nullptr;    // null: not shown
   const image::ImageF* expected_error = nullptr;  // one channel, NaN where there is none; null: not shown
-  const image::Image8* mesh = nullptr;          // of the surface, at the photo's brightness; null: not shown
+  const image::Image8* mesh = nullptr;            // of the surface, at the photo's brightness; null: not shown
 };
 
 // Mean over RGB of |photo - render| in display values, one channel. Sizes must agree.

@@ -1,6 +1,7 @@
 // report/index.html: one page that opens offline; style and script inside, pictures as files beside it.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct PhotoImages {
   int height = 0;
   double depth_low_m = kNotMeasured;  // range of the depth colours
   double depth_high_m = kNotMeasured;
+
+  // All paths; empty ones are not shown.
+  std::array<std::string, 8> Files() const { return {photo, render, error, depth, normals, true_normals, trust, mesh}; }
 };
 
 struct ReportInput {

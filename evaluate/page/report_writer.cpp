@@ -18,7 +18,7 @@ namespace skyquilt::evaluate::page {
 namespace {
 
 constexpr float kErrorHigh = skyquilt::trust::kTopError;  // display values at the top of the error colours
-constexpr int kPhotosWithNormals = 2;  // enough to see how rough surfaces are
+constexpr int kPhotosWithNormals = 2;                     // enough to see how rough surfaces are
 constexpr int kPhotosWithMesh = 3;
 
 std::string TitleOf(const std::filesystem::path& project_folder) {
@@ -31,7 +31,9 @@ std::string TitleOf(const std::filesystem::path& project_folder) {
 void RemoveStalePictures(const std::filesystem::path& report_folder, const ReportInput& page, const buildings::BuildingsReport* found) {
   std::set<std::string> kept;
   if (page.background) kept.insert(page.background->image);
-  for (const PhotoImages& one : page.images) kept.insert({one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.mesh});
+  for (const PhotoImages& one : page.images) {
+    for (const std::string& file : one.Files()) kept.insert(file);
+  }
   for (const control::MarkPicture& one : page.mark_pictures) kept.insert({one.photo, one.render});
   for (const ElevationPicture& one : page.elevations) kept.insert(one.image);
   for (const OrthoPicture& one : page.ortho_pictures) kept.insert({one.map, one.truth});

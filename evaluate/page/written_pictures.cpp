@@ -1,6 +1,7 @@
 #include "evaluate/page/written_pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <system_error>
 
@@ -48,11 +49,11 @@ bool WrittenPictures::Exist(const std::filesystem::path& report_folder) const {
     std::error_code ignored;
     return file.empty() || std::filesystem::is_regular_file(report_folder / file, ignored);
   };
-  const auto all = [&](const auto&... files) { return (is_there(files) && ...); };
-  return std::all_of(
-             images.begin(), images.end(),
-             [&](const PhotoImages& one) { return all(one.photo, one.render, one.error, one.depth, one.normals, one.true_normals, one.trust, one.mesh); }) &&
-         std::all_of(views.begin(), views.end(), [&](const BrightnessView& one) { return all(one.photo, one.recorded, one.normal); });
+  const auto all = [&](const auto& files) { return std::ranges::all_of(files, is_there); };
+  return std::ranges::all_of(images, [&](const PhotoImages& one) { return all(one.Files()); }) &&
+         std::ranges::all_of(views, [&](const BrightnessView& one) {
+           return all(std::array{one.photo, one.recorded, one.normal});
+         });
 }
 
 }  // namespace skyquilt::evaluate::page

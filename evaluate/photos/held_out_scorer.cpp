@@ -75,8 +75,8 @@ bool HeldOutScorer::LooksAreAlike() const {
   return !input_.scene->info().luminance.On() && input_.options.normal_stops == 0.0 && !input_.options.field_normals;
 }
 
-PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads,
-                                         std::vector<render::RayColor>* as_rendered, PhotoTrust* trust) const {
+PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads, std::vector<render::RayColor>* as_rendered,
+                                         PhotoTrust* trust) const {
   const Recordings recordings = RecordingsOf(photo);
   const auto start = std::chrono::steady_clock::now();
   // A field whose encoding has no slope cannot be rendered with normals, not even with those of a head.

@@ -11,9 +11,9 @@
 namespace skyquilt::evaluate::photos {
 
 struct PhotoTrust {
-  skyquilt::trust::TrustPicture expected;   // empty: trust was not measured
-  trust::TrustPixels sample;                // a few thousand of the scored pixels, evenly over the photo
-  double expected_psnr_db = kNotMeasured;   // of the scored pixels
+  skyquilt::trust::TrustPicture expected;  // empty: trust was not measured
+  trust::TrustPixels sample;               // a few thousand of the scored pixels, evenly over the photo
+  double expected_psnr_db = kNotMeasured;  // of the scored pixels
 };
 
 // Before the photo's response is applied to what was rendered.

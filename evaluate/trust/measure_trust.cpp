@@ -19,8 +19,8 @@ namespace {
 
 using skyquilt::trust::LeftOutTiles;
 
-constexpr int kClosest = 4;             // pixels between those that are compared, along each axis, at least
-constexpr size_t kMostTiles = 1500;     // that errors are measured in
+constexpr int kClosest = 4;          // pixels between those that are compared, along each axis, at least
+constexpr size_t kMostTiles = 1500;  // that errors are measured in
 constexpr size_t kBatchRays = 1U << 17U;
 constexpr int kTilePixels = LeftOutTiles::kSide * LeftOutTiles::kSide;
 constexpr const char* kLabel = "trust";
@@ -158,7 +158,11 @@ class TrustMeter {
  public:
   TrustMeter(const scene::Scene& scene, const survey::Survey& survey, const image::PixelCache& pixels, const skyquilt::trust::TrustOptions& options,
              base::ThreadPool& threads)
-      : info_(scene.info()), pixels_(pixels), left_out_(options.LeftOut()), threads_(threads), photos_(TrainingPhotos(survey)),
+      : info_(scene.info()),
+        pixels_(pixels),
+        left_out_(options.LeftOut()),
+        threads_(threads),
+        photos_(TrainingPhotos(survey)),
         compared_(scene, survey, pixels, threads) {
     const double all = std::accumulate(photos_.begin(), photos_.end(), 0.0, [&](double sum, size_t photo) {
       return sum + static_cast<double>(pixels.Width(photo)) * static_cast<double>(pixels.Height(photo));

@@ -31,8 +31,8 @@ double Ause(std::span<const float> doubt, std::span<const float> squared_error);
 struct TrustScores {
   size_t pixels = 0;
   double ause = 0.0, ause_photos = 0.0, ause_gradient = 0.0, ause_opacity = 0.0;  // by trust, by few photos, by gradient, by low opacity
-  double least_over_most = 0.0;   // mean squared error of the tenth trusted least over that of the tenth trusted most
-  double expected_rms = 0.0;      // root mean square of the errors expected, and of those that were found
+  double least_over_most = 0.0;  // mean squared error of the tenth trusted least over that of the tenth trusted most
+  double expected_rms = 0.0;     // root mean square of the errors expected, and of those that were found
   double found_rms = 0.0;
 };
 TrustScores ScoreTrust(const TrustPixels& pixels);

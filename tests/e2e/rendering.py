@@ -150,6 +150,9 @@ def test(skyquilt, folder):
     expect(expected["psnr"] > 10.0, f"PSNR {expected['psnr']}")
     trust = expected["trust"]
     expect(0.3 < trust["rms_expected"] / trust["rms_found"] < 3.0 and trust["ause"] < trust["ause_by_opacity"], f"trust: {trust}")
+    pictures = set(re.findall(r'images/[\w.-]+', (project / "report" / "index.html").read_text()))
+    missing = [name for name in pictures if not (project / "report" / name).is_file()]
+    expect(not missing and any(name.endswith("_trust.png") for name in pictures), f"the report lacks pictures: {missing} of {sorted(pictures)}")
     expect(all(image["psnr_expected"] > 5.0 for image in expected["images"]), "photos lack the PSNR to expect")
     expect(all(medians_of(expected, kind) == [] for kind in ("density", "head")), "normals of the field are scored without being asked for")
     field_normals = ("--set", "evaluate.field_normals=true")

@@ -202,8 +202,8 @@ trust::Trust SceneHolder::TrustOfMain() const {
     return trust::LoadTrustOf(main_.project.SceneFile());
   } catch (const base::InputError& error) {
     base::LogWarning("no map of the errors to expect: {}", error.what());
-    throw BadMessage("it is not known how far this scene can be trusted: merge it again (skyquilt merge " +
-                     main_.project.folder.filename().string() + " --restart) with trust.tiles above 0");
+    throw BadMessage("it is not known how far this scene can be trusted: merge it again (skyquilt merge " + main_.project.folder.filename().string() +
+                     " --restart) with trust.tiles above 0");
   }
 }
 

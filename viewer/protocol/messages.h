@@ -106,8 +106,8 @@ struct CancelRequest {
   uint32_t id = 0;
 };
 
-using ClientMessage =
-    std::variant<Hello, ViewRequest, StopView, FrameAck, PickRequest, PhotosAtRequest, ProfileRequest, VolumeRequest, ErrorMapRequest, TrustMapRequest, CancelRequest>;
+using ClientMessage = std::variant<Hello, ViewRequest, StopView, FrameAck, PickRequest, PhotosAtRequest, ProfileRequest, VolumeRequest,
+                                   ErrorMapRequest, TrustMapRequest, CancelRequest>;
 
 // A message that is not allowed; what() names the field and the allowed values, and never repeats more than 40 characters of the client's text.
 class BadMessage : public std::runtime_error {

@@ -52,8 +52,8 @@ using PhotoCaster = std::function<void(int photo, std::span<const render::Ray>, 
 std::unique_ptr<Query> MakeErrorMap(const ErrorMapRequest& request, std::shared_ptr<const survey::Survey> survey, PhotoCaster photo_caster,
                                     PublishPicture publish);
 
-// The errors to expect of the surfaces that are seen from above, at most MeanMap::kMaxSide cells along each side. Throws BadMessage without a picture to
-// publish.
+// The errors to expect of the surfaces that are seen from above, at most MeanMap::kMaxSide cells along each side. Throws BadMessage without a picture
+// to publish.
 std::unique_ptr<Query> MakeTrustMap(const TrustMapRequest& request, trust::Trust trust, PublishPicture publish);
 
 // Depth spread of a rendered ray: one standard deviation along the ray, metres; NaN without a surface. The depths where the transmittance falls below

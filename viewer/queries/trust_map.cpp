@@ -77,7 +77,7 @@ class TrustMapQuery : public Query {
   std::optional<VerticalRays> rays_;
   std::optional<MeanMap> map_;
   double gsd_m_ = 0.0;
-  size_t done_ = 0;  // rays
+  size_t done_ = 0;                             // rays
   std::array<render::RayColor, kRays> colors_;  // of the cell whose rays are being cast
   TrustMapResult result_;
 };

@@ -48,8 +48,7 @@ const Arrows& AllowedIncludes() {
         {"core/scene",
          {"core/render", "core/field", "core/encoding", "core/brightness", "core/camera", "core/geo", "core/linear", "core/checkpoint", "core/image",
           "core/base"}},
-        {"core/trust",
-         {"core/render", "core/config", "core/checkpoint", "core/image", "core/linear", "core/base"}},
+        {"core/trust", {"core/render", "core/config", "core/checkpoint", "core/image", "core/linear", "core/base"}},
         {"core/metrics", {"core/network", "core/image", "core/base"}},
         {"core/gis", {"core/geo", "core/image", "core/base"}},
     };

@@ -76,10 +76,11 @@ RC_GTEST_PROP(ErrorModel, IsFiniteForAnyFactsAndSample, ()) {
   const auto any = rc::gen::element(0.0F, 1e-30F, 0.01F, 0.5F, 1.0F, 1e30F, -1.0F, std::numeric_limits<float>::infinity(),
                                     std::numeric_limits<float>::quiet_NaN());
   const auto facts = [&] {
-    return PixelFacts{{*rc::gen::arbitrary<bool>(), -5.0F * static_cast<float>(*rc::gen::inRange(0, 3)), static_cast<float>(*rc::gen::inRange(0, 300))},
-                      *any,
-                      *any,
-                      *any};
+    return PixelFacts{
+        {*rc::gen::arbitrary<bool>(), -5.0F * static_cast<float>(*rc::gen::inRange(0, 3)), static_cast<float>(*rc::gen::inRange(0, 300))},
+        *any,
+        *any,
+        *any};
   };
   const size_t n = *rc::gen::element<size_t>(0, 1, 99, 150, 400);
   Sample sample;

@@ -32,8 +32,8 @@ TEST(Ause, IsZeroForTheTrueOrderAndGrowsWithDisorder) {
 }
 
 TEST(Ause, OfTwoKindsOfPixelsIsWhatTheFormulaGives) {
-  // Half of the pixels have no error. Without order the root mean square stays at that of all; in the true order it is sqrt((0.5 - s) / (1 - s) / 0.5)
-  // of it for shares s below one half, and zero above.
+  // Half of the pixels have no error. Without order the root mean square stays at that of all; in the true order it is sqrt((0.5 - s) / (1 - s) /
+  // 0.5) of it for shares s below one half, and zero above.
   std::vector<float> errors(10000);
   for (size_t i = 0; i < errors.size(); i += 2) errors[i] = 0.04F;
   double truth = 0.0;

@@ -35,7 +35,8 @@ TEST(TrustMap, ShowsWhatIsKnownOfThePlacesSeenFromAbove) {
     return std::string("pictures/2.png");
   });
   // No ground in the south.
-  const nlohmann::json answer = AnswerOf(*query, AccessTo(FieldOf(Above([](double, double y) { return y > -50.0 ? std::optional(1.0) : std::nullopt; }))));
+  const nlohmann::json answer =
+      AnswerOf(*query, AccessTo(FieldOf(Above([](double, double y) { return y > -50.0 ? std::optional(1.0) : std::nullopt; }))));
   EXPECT_EQ(answer["type"], "trust_map");
   EXPECT_EQ(answer["id"], 5);
   EXPECT_EQ(answer["url"], "pictures/2.png");

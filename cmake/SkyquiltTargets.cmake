@@ -92,6 +92,11 @@ function(skyquilt_json_last out)
   set(${out} ${others} ${json} PARENT_SCOPE)
 endfunction()
 
+# Rooms that organise and describe what others compute. Clang spends two thirds of its time on optimising, a quarter of that on copies of functions that
+# it inlines: with fewer of them these compile in 17 % less time. Rooms that compute would run up to 9 % longer.
+set(rooms_that_organise app bench coordinator core/base core/config core/page core/survey evaluate/control evaluate/metrics evaluate/page masks odm partition
+  prepare/control prepare/georeference prepare/input prepare/models prepare/rigs prepare/tables prepare/video tour viewer)
+
 # NO_PARSED_HEADERS: for sources with compiler options of their own.
 function(skyquilt_library name)
   cmake_parse_arguments(ARG "NO_PARSED_HEADERS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
@@ -101,6 +106,12 @@ function(skyquilt_library name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${SKYQUILT_UNITY} UNITY_BUILD_BATCH_SIZE 12)
   # Warnings apply to our code only, not to third-party headers.
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE folder)
+  foreach(room IN LISTS rooms_that_organise)
+    if("${folder}/" MATCHES "^${room}/")
+      target_compile_options(${name} PRIVATE $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:Clang>>:SHELL:-mllvm -inline-threshold=50 -mllvm -inlinehint-threshold=50>)
+    endif()
+  endforeach()
   if(NOT ARG_NO_PARSED_HEADERS)
     skyquilt_use_parsed_headers(${name} program)
   endif()

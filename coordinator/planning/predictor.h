@@ -36,6 +36,7 @@ class Predictor {
   double PrepareSeconds(const Settings& settings) const;
   double TrainSeconds(const Settings& settings) const;
   double ProductsSeconds(const Settings& settings) const;
+  double TrustSeconds(const Settings& settings) const;
   double SurfaceSeconds(const Settings& settings) const;
   double EvaluateSeconds(const Settings& settings) const;
   double MasksSeconds(const Settings& settings) const;

@@ -200,7 +200,9 @@ OpenedProject OpenProject(const coordinator::Project& project, const OpenedProje
   opened.description = {{"name", folder.filename().string()}, {"missing", Json::array()}};
   ReadSurvey(&opened, earlier);
   const std::optional<SceneFacts> scene = ReadScene(&opened);
-  opened.description["scene"] = scene ? Json{{"blocks", scene->boxes.size()}, {"parameters", scene->parameters}} : Json(nullptr);
+  opened.description["scene"] =
+      scene ? Json{{"blocks", scene->boxes.size()}, {"parameters", scene->parameters}, {"trust", std::filesystem::exists(project.TrustFile())}}
+            : Json(nullptr);
   const std::optional<partition::BlockSet> blocks = ReadBlocks(&opened);
   const opening::JsonFile metrics = opening::ReadJson(project.MetricsFile());
   DescribePlace(&opened, scene, blocks);

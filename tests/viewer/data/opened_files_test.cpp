@@ -91,6 +91,7 @@ TEST_F(OpenedFilesTest, ASceneGivesPlaceAndBoxWithoutSurvey) {
   ProjectData data(sample_.project);
   const nlohmann::json description = DescriptionOf(data);
   EXPECT_EQ(description["scene"]["blocks"], 1);
+  EXPECT_FALSE(description["scene"]["trust"].get<bool>());
   EXPECT_GT(description["scene"]["parameters"].get<int64_t>(), 0) << "train.json is not needed";
   EXPECT_EQ(description["max_enu"], nlohmann::json({5.0, 5.0, 4.0}));
   EXPECT_EQ(description["gsd_m"], 0.05);

@@ -52,7 +52,7 @@ export async function readExportedTour(files: Files): Promise<ExportedTour> {
     }
   }
   // There is no scene to render from, but its pictures.
-  const scene = stops.size > 0 ? { blocks: 0, parameters: 0 } : null;
+  const scene = stops.size > 0 ? { blocks: 0, parameters: 0, trust: false } : null;
   return { project: { ...project, scene }, tour, measurements, pictures: stops, missing: sentences };
 }
 

@@ -147,6 +147,7 @@ function readBase(o: JsonObject, path: string, folder: FilesFolder): ProjectBase
       return {
         blocks: asInteger(scene.blocks, member(place, "blocks"), 0),
         parameters: asInteger(scene.parameters, member(place, "parameters"), 0),
+        trust: asBoolean(scene.trust, member(place, "trust")),
       };
     }),
     tiles: url("tiles"),

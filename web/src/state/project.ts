@@ -55,7 +55,7 @@ export interface ProjectBase {
   readonly max: Vec3;
   readonly groundM: number;
   readonly gsdM: number;
-  readonly scene: { readonly blocks: number; readonly parameters: number } | null;
+  readonly scene: { readonly blocks: number; readonly parameters: number; readonly trust: boolean } | null;
   /** Absolute URLs of this server, or null. */
   readonly tiles: string | null;
   readonly terrain: string | null;

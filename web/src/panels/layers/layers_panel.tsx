@@ -155,6 +155,7 @@ function errorMapText(project: Project, state: AppState): LayerText {
 function trustText(project: Project, state: AppState): LayerText {
   const label = "Error to expect";
   if (project.scene === null) return { label, detail: "no field", available: false };
+  if (!project.scene.trust) return { label, detail: "not measured", available: false };
   return { label, detail: beingMade(state, "trust") ?? "", available: true };
 }
 

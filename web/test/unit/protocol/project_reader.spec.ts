@@ -17,7 +17,7 @@ function description(): Record<string, unknown> {
     max_enu: [10, 20, 30],
     ground_m: 0.5,
     gsd_m: 0.05,
-    scene: { blocks: 4, parameters: 1000000 },
+    scene: { blocks: 4, parameters: 1000000, trust: true },
     tiles: "tiles/tileset.json",
     terrain: null,
     orthophoto: "orthophoto.jpg?r=3",

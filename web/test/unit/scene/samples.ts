@@ -17,7 +17,7 @@ export function sampleBase(patch: Partial<ProjectBase> = {}): ProjectBase {
     max: [161.4, 134.3, 30.7],
     groundM: 0.5,
     gsdM: 0.18,
-    scene: { blocks: 4, parameters: 1000 },
+    scene: { blocks: 4, parameters: 1000, trust: true },
     tiles: "/data/tiles/tileset.json",
     terrain: null,
     orthophoto: null,

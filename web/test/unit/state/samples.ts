@@ -25,7 +25,7 @@ export function sampleProject(change: Partial<Project> = {}): Project {
     max: [120, 90, 40],
     groundM: 2,
     gsdM: 0.03,
-    scene: { blocks: 1, parameters: 1000 },
+    scene: { blocks: 1, parameters: 1000, trust: true },
     tiles: "/data/tiles/tileset.json",
     terrain: null,
     orthophoto: null,

@@ -27,7 +27,8 @@ std::string PhotoCard(const ReportInput& input, size_t index) {
   if (std::isfinite(score.expected_psnr_db)) html += Chip("PSNR to expect", FormatFixed(score.expected_psnr_db, 2, "dB"));
   html += Chip("full frame", FormatFixed(score.psnr_full_db, 2, "dB"));
   if (input.metrics->has_truth) html += Chip("median depth error", FormatFixed(score.depth_median_abs_m, 2, "m"));
-  html += "</div></header><div class=\"pics\">";
+  // Photo, render, error, error to expect and depth in one row; with normals there are two.
+  html += fmt::format("</div></header><div class=\"pics{}\">", !images.trust.empty() && images.normals.empty() ? " five" : "");
   html += fmt::format(
       "<figure class=\"pic slider\"><div class=\"compare\" style=\"aspect-ratio:{0}/{1}\"><img src=\"{2}\" loading=\"lazy\" alt=\"Render\"><img "
       "class=\"top\" src=\"{3}\" loading=\"lazy\" alt=\"Photo\"><i></i><span class=\"tag l\">Photo</span><span class=\"tag r\">Render</span><input "

@@ -76,15 +76,16 @@ def test(_, folder):
     documents = root / "usr/share/doc/skyquilt"
     for path in ("copyright", "LICENSE", "README.md", "docs/licences.md", "docs/commands.md", "examples/configs/fast.toml", "examples/skyquilt.slurm"):
         expect((documents / path).stat().st_size > 0, f"{path} is empty")
-    expect(sorted(path.name for path in (root / "usr/bin").iterdir()) == ["skyquilt", "skyquilt-mpirun"], "other programs than these two")
+    programs = sorted(path.name for path in (root / "usr/bin").iterdir())
+    expect(programs == ["skyquilt", "skyquilt-bench", "skyquilt-mpirun"], f"programs: {programs}")
     expect((documents / "copyright").read_text().startswith("Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/"), "copyright")
 
-    program = root / "usr/bin/skyquilt"
-    dynamic = output("readelf", "--dynamic", program, cwd=folder)
-    expect("RUNPATH" not in dynamic and "RPATH" not in dynamic, dynamic)
-    expect(".symtab" not in output("readelf", "--sections", "--wide", program, cwd=folder), "the program is not stripped")
-    for place in (source, build):
-        expect(os.fsencode(place) not in program.read_bytes(), f"the program names {place}")
+    for program in (root / "usr/bin/skyquilt-bench", root / "usr/bin/skyquilt"):
+        dynamic = output("readelf", "--dynamic", program, cwd=folder)
+        expect("RUNPATH" not in dynamic and "RPATH" not in dynamic, dynamic)
+        expect(".symtab" not in output("readelf", "--sections", "--wide", program, cwd=folder), f"{program} is not stripped")
+        for place in (source, build):
+            expect(os.fsencode(place) not in program.read_bytes(), f"{program} names {place}")
 
     # From here on nothing of the build is used.
     away = folder / "away"

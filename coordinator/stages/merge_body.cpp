@@ -1,4 +1,6 @@
 // The work of stage "merge".
+#include <string>
+
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/stages/stage_bodies.h"
@@ -27,7 +29,9 @@ void MeasureSceneTrust(Pipeline& pipeline) {
     trust.scene = trust::SceneIdentity(project.SceneFile());
     trust::Save(trust, project.TrustFile());
   } catch (const base::InputError& error) {
-    base::LogWarning("it is not known how far the scene can be trusted: {}", error.what());
+    // Where photos are gone the message lists all of them, a line each.
+    const std::string text = error.what();
+    base::LogWarning("it is not known how far the scene can be trusted: {}", text.substr(0, text.find('\n')));
   }
 }
 

@@ -19,16 +19,16 @@ constexpr double kFirstPicture_s = 2.0;
 constexpr double kStageStart_s = 1.0;  // reading survey and scene, writing small files
 // As fast as rays from a photo, which are measured: of map cells, and of a video's pictures, which look farther. Town, orbit, Brighton Beach.
 constexpr double kMapRays = 1.0, kVideoRays = 0.75;
-constexpr double kMostFineMapCells = 8e6;                                // as in products/map_products.cpp
-constexpr double kFineMapRays = 0.5;                                     // of their cells that get a ray (products/map_cells.h)
-constexpr double kPixelsPerTrustRay = 16.0, kMostTrustTilePixels = 4e5;  // as in evaluate/trust/measure_trust.cpp
-constexpr double kTexelLevels = 4.0 / 3.0;                               // coarser tiles have a quarter of the texels each
-constexpr double kWallShare = 1.3;                                       // surface per ground
-constexpr double kMeshCells = 0.12e6;                                    // voxels of the surface per second and thread
-constexpr double kLevelMesh = 2.0;                                       // times as long: walls, trees and what they hide
-constexpr double kReportPhotos = 3.0;                                    // pictures of a photo written per second and thread
-constexpr double kBuildingCells = 0.2e6;                                 // cells of the surface per second and thread
-constexpr double kMeshScores = 1.0;                                      // comparing the mesh with a photo, too: as long as comparing the field
+constexpr double kMostFineMapCells = 8e6;                              // as in products/map_products.cpp
+constexpr double kFineMapRays = 0.5;                                   // of their cells that get a ray (products/map_cells.h)
+constexpr double kPixelsPerTrustRay = 16.0, kMostTrustTiles = 1500.0;  // as in evaluate/trust/measure_trust.cpp
+constexpr double kTexelLevels = 4.0 / 3.0;                             // coarser tiles have a quarter of the texels each
+constexpr double kWallShare = 1.3;                                     // surface per ground
+constexpr double kMeshCells = 0.12e6;                                  // voxels of the surface per second and thread
+constexpr double kLevelMesh = 2.0;                                     // times as long: walls, trees and what they hide
+constexpr double kReportPhotos = 3.0;                                  // pictures of a photo written per second and thread
+constexpr double kBuildingCells = 0.2e6;                               // cells of the surface per second and thread
+constexpr double kMeshScores = 1.0;                                    // comparing the mesh with a photo, too: as long as comparing the field
 constexpr double kTruthScores_s = 6.0;
 // Seconds per photo and thread of stage "masks", guessed: networks differ by far more than machines.
 constexpr double kNetworkMask_s = 1.0, kGroundMask_s = 0.4;
@@ -115,7 +115,7 @@ double Predictor::ProductsSeconds(const Settings& settings) const {
 double Predictor::TrustSeconds(const Settings& settings) const {
   if (!settings.trust.Measured()) return 0.0;
   const double pixels = size_.TrainingPhotos() * size_.PixelsAt(settings.run.image_width);
-  return RaySeconds(std::min(settings.trust.rays, pixels / kPixelsPerTrustRay) + std::min(kMostTrustTilePixels, settings.trust.tiles * pixels));
+  return RaySeconds(std::min(settings.trust.rays, pixels / kPixelsPerTrustRay) + 256.0 * std::min(kMostTrustTiles, double{1} * settings.trust.tiles));
 }
 
 double Predictor::SurfaceSeconds(const Settings& settings) const {

@@ -134,7 +134,7 @@ FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::Blo
     train.options.seconds = job.seconds;
     train.response = plan.response;
     train.learn = plan.learn;
-    train.left_out = settings.trust.LeftOut();
+    train.left_out = settings.trust.LeftOut(pixels);
     train.min_views = settings.partition.min_views;
     train.attempt = job.attempt;
     train.learning_rate_scale = job.rate_factor;

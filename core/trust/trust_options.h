@@ -4,16 +4,18 @@
 #include <vector>
 
 #include "core/config/options.h"
+#include "core/image/pixel_cache.h"
 #include "core/trust/left_out_tiles.h"
 
 namespace skyquilt::trust {
 
 struct TrustOptions {
-  double tiles = 0.01;  // 0: nothing is left out of training, and trust is not measured
+  int tiles = 400;  // 0: nothing is left out of training, and trust is not measured
   double rays = 2e6;
 
-  LeftOutTiles LeftOut() const { return {tiles}; }
-  bool Measured() const { return tiles > 0.0; }
+  // Of these photos.
+  LeftOutTiles LeftOut(const image::PixelCache& pixels) const;
+  bool Measured() const { return tiles > 0; }
 
   static std::vector<config::Field<TrustOptions>> Fields();
   // Throws base::UsageError for values that are not allowed.

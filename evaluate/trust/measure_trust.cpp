@@ -160,7 +160,7 @@ class TrustMeter {
              base::ThreadPool& threads)
       : info_(scene.info()),
         pixels_(pixels),
-        left_out_(options.LeftOut()),
+        left_out_(options.LeftOut(pixels)),
         threads_(threads),
         photos_(TrainingPhotos(survey)),
         compared_(scene, survey, pixels, threads) {

@@ -10,7 +10,7 @@
 namespace skyquilt::trust {
 
 struct TrustOptions {
-  int tiles = 400;  // 0: nothing is left out of training, and trust is not measured
+  int tiles = 100;  // 0: nothing is left out of training, and trust is not measured
   double rays = 2e6;
 
   // Of these photos.

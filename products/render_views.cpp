@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "core/base/amounts.h"
 #include "core/base/cancel.h"
@@ -30,12 +29,7 @@ std::vector<render::RayColor> Render(const ViewRenderer& renderer, const View& v
 
 image::ImageF ErrorsToExpect(const ViewImages& images, const View& view, const std::vector<render::RayColor>& colors, base::ThreadPool& threads) {
   const scene::CameraRays camera(view.camera, view.cam_from_enu, images.cones);
-  const auto width = static_cast<size_t>(view.camera.width);
-  const trust::RowRays rays = [&](int row, std::span<render::Ray> of_row) {
-    std::vector<size_t> pixels(width);
-    std::iota(pixels.begin(), pixels.end(), static_cast<size_t>(row) * width);
-    camera.Make(pixels, of_row);
-  };
+  const trust::RowRays rays = [&](int row, std::span<render::Ray> of_row) { camera.MakeRow(row, of_row); };
   return trust::TrustOf(*images.trust, view.camera.width, view.camera.height, colors, rays, threads).error;
 }
 

@@ -1,6 +1,7 @@
 #include "core/scene/camera_rays.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 #include "core/base/errors.h"
@@ -22,6 +23,12 @@ CameraRays::CameraRays(const camera::Camera& camera, const geo::Rigid3d& cam_fro
       // Scenes without cones use the pitch for the length of steps only.
       nominal_(static_cast<float>(1.0 / std::max(1e-9, camera.FocalX()))) {
   if (cones) pitch_.emplace(camera);
+}
+
+void CameraRays::MakeRow(int row, std::span<render::Ray> out) const {
+  std::vector<size_t> pixels(static_cast<size_t>(camera_.width));
+  std::iota(pixels.begin(), pixels.end(), static_cast<size_t>(row) * pixels.size());
+  Make(pixels, out);
 }
 
 void CameraRays::Make(std::span<const size_t> pixels, std::span<render::Ray> out) const {

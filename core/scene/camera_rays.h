@@ -19,6 +19,8 @@ class CameraRays {
 
   // pixels: row * width + column each; `out` has the same length. Thread-safe.
   void Make(std::span<const size_t> pixels, std::span<render::Ray> out) const;
+  // All pixels of a row of the picture.
+  void MakeRow(int row, std::span<render::Ray> out) const;
 
  private:
   camera::Camera camera_;

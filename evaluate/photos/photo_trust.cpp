@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/metrics/psnr.h"
 #include "core/scene/camera_rays.h"
@@ -28,12 +27,7 @@ float MeanSquaredError(const render::RayColor& color, const uint8_t* photo) {
 std::vector<skyquilt::trust::PixelFacts> FactsOfPhoto(const skyquilt::trust::Trust& trust, const HeldOutPhoto& task, bool cones,
                                                       std::span<const render::RayColor> rendered, base::ThreadPool& threads) {
   const scene::CameraRays camera(task.camera, task.cam_from_enu, cones);
-  const auto width = static_cast<size_t>(task.camera.width);
-  const skyquilt::trust::RowRays rays = [&](int row, std::span<render::Ray> of_row) {
-    std::vector<size_t> pixels(width);
-    std::iota(pixels.begin(), pixels.end(), static_cast<size_t>(row) * width);
-    camera.Make(pixels, of_row);
-  };
+  const skyquilt::trust::RowRays rays = [&](int row, std::span<render::Ray> of_row) { camera.MakeRow(row, of_row); };
   return skyquilt::trust::FactsOf(trust.evidence, task.camera.width, task.camera.height, rendered, rays, threads);
 }
 

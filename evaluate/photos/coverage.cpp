@@ -7,6 +7,7 @@
 
 #include "core/base/errors.h"
 #include "core/camera/photo_visibility.h"
+#include "evaluate/photos/training_depths.h"
 
 namespace skyquilt::evaluate::photos {
 
@@ -69,7 +70,7 @@ bool TrainingViews::Sees(int view_index, const Eigen::Vector3d& x_in_enu) const 
   const Cone& cone = cones_[static_cast<size_t>(view_index)];
   const Eigen::Vector3d offset = x_in_enu - cone.apex_enu;
   if (offset.dot(cone.axis_enu) < cone.cos_limit * offset.norm()) return false;
-  return camera::IsVisible(view.camera, view.cam_from_enu, x_in_enu, {.mask = view.mask});
+  return camera::IsVisible(view.camera, view.cam_from_enu, x_in_enu, {.mask = view.mask}) && !IsHidden(view, x_in_enu);
 }
 
 int TrainingViews::Count(const Eigen::Vector3d& x_in_enu, std::span<const int> order, int enough) const {

@@ -1,5 +1,5 @@
 // Coverage: a pixel of a held-out photo is scored only if at least two training photos see its surface point, because a scene cannot be expected to
-// know anything else. Frame: survey ENU, metres.
+// know anything else. Where photos look level, they must see it with nothing before it (training_depths.h). Frame: survey ENU, metres.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,6 +10,7 @@
 
 #include "core/camera/camera.h"
 #include "core/geo/transform.h"
+#include "core/image/image.h"
 
 namespace skyquilt::evaluate::photos {
 
@@ -28,6 +29,8 @@ struct TrainingView {
   camera::Camera camera;  // at the size of the mask
   geo::Rigid3d cam_from_enu;
   std::span<const uint8_t> mask;  // width * height, 0 = ignored; empty: every pixel counts
+  // What hides places: metres along the ray to the scene's surface, NaN where there is none, in one channel and any size; empty: nothing does.
+  image::ImageF depth_m = {};
 };
 
 class TrainingViews {
@@ -36,7 +39,7 @@ class TrainingViews {
 
   // Indices of the views, nearest camera to the point first. Near views most likely see a point, so Count then stops early.
   std::vector<int> ByDistance(const Eigen::Vector3d& x_in_enu) const;
-  // Number of views in `order` that have the point inside their image on an unmasked pixel; stops counting at `enough`.
+  // Number of views in `order` that have the point inside their image on an unmasked pixel and not hidden; stops counting at `enough`.
   int Count(const Eigen::Vector3d& x_in_enu, std::span<const int> order, int enough) const;
   bool Sees(int view, const Eigen::Vector3d& x_in_enu) const;
   size_t size() const { return views_.size(); }

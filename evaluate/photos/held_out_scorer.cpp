@@ -9,6 +9,7 @@
 #include "core/base/log.h"
 #include "core/survey/view_kind.h"
 #include "evaluate/photos/load_held_out_photo.h"
+#include "evaluate/photos/training_depths.h"
 
 namespace skyquilt::evaluate::photos {
 
@@ -90,7 +91,7 @@ PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, ba
   ApplyResponse(task.camera, recordings.predicted, rendered, threads);
   const double render_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  PhotoResult findings = ScorePhoto(task, rendered, views_, area_, threads);
+  PhotoResult findings = ScorePhoto(task, rendered, unhidden_ ? *unhidden_ : views_, area_, threads);
   if (field_normals) findings.density_normals = NormalsOf(rendered, findings.scored, &render::RayColor::density_normal);
   if (field_normals && input_.scene->info().normal_head) {
     findings.head_normals = NormalsOf(rendered, findings.scored, &render::RayColor::predicted_normal);
@@ -116,6 +117,7 @@ std::vector<render::RayColor> HeldOutScorer::RenderNormal(const HeldOutPhoto& ta
 }
 
 ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& threads) {
+  if (!unhidden_ && survey::LooksLevel(*input_.survey)) unhidden_.emplace(WithDepths(training_, *input_.scene, threads));
   ScoredPhoto scored;
   scored.task = LoadHeldOutPhoto(*input_.survey, *input_.pixels, photo, input_.options.image_width);
   const std::filesystem::path normal_photos = input_.options.normal_photos;

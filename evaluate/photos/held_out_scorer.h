@@ -35,7 +35,7 @@ class HeldOutScorer {
   ScoredPhoto Score(int photo, bool keep_normal, base::ThreadPool& threads);
 
   const std::vector<TrainingView>& training() const { return training_; }
-  const TrainingViews& views() const { return views_; }  // the same
+  const TrainingViews& views() const { return views_; }  // the same; nothing hides places from them
   const SceneArea& area() const { return area_; }
   size_t n_boxes() const { return area_.boxes.size(); }  // size of PhotoResult::per_block
 
@@ -58,6 +58,7 @@ class HeldOutScorer {
   const SceneArea area_;
   const std::vector<TrainingView> training_;
   const TrainingViews views_;
+  std::optional<TrainingViews> unhidden_;  // where photos look level: the same, from which the scene hides places; rendered for the first photo
   std::optional<skyquilt::metrics::Lpips> lpips_;
 };
 

@@ -24,7 +24,9 @@ constexpr double kLowestPitch_deg = 8.0, kHighestPitch_deg = 16.0;
 // Of the stations; trees may hide the wall from the others.
 constexpr double kShareThatSeesTheWall = 0.75;
 // Of the distance, where something stands in the way.
-constexpr std::array<double, 5> kDistanceFactors = {1.0, 0.9, 1.1, 0.8, 1.2};
+constexpr std::array<double, 7> kDistanceFactors = {1.0, 0.9, 1.1, 0.8, 1.2, 0.7, 1.3};
+// Cars and trees nearer than this share of the distance to the wall are in the way of the picture.
+constexpr double kInTheWay = 0.5;
 
 // One straight side of a building on the ground.
 struct Front {
@@ -60,13 +62,42 @@ std::vector<Front> FrontsIn(const PlaceSpec& place, const World& world, const st
   return fronts;
 }
 
-std::optional<Vector3d> FreePlaceBefore(const World& world, const Front& front, double along_m, double distance_m) {
+bool IsThing(Part part) {
+  return part == Part::kCarBody || part == Part::kCarGlass || part == Part::kCarTyre || part == Part::kTrunk || part == Part::kLeaves;
+}
+
+// How many of a grid of the picture's rays end on things nearer than near_m.
+int RaysInTheWay(const PlaceSpec& place, const World& world, const Front& front, const Vector3d& eye, double pitch_deg, double near_m) {
+  constexpr int kColumns = 13, kRows = 9;
+  const double pitch = pitch_deg * std::numbers::pi / 180.0;
+  const Vector3d right(front.along.x(), front.along.y(), 0.0), level(-front.out.x(), -front.out.y(), 0.0);
+  const Vector3d ahead = std::cos(pitch) * level + std::sin(pitch) * Vector3d::UnitZ();
+  const Vector3d upwards = std::cos(pitch) * Vector3d::UnitZ() - std::sin(pitch) * level;
+  int n = 0;
+  for (int i = 0; i < kColumns * kRows; ++i) {
+    const double x = (i % kColumns + 0.5) / kColumns - 0.5, y = (i / kColumns + 0.5) / kRows - 0.5;
+    const Vector3d ray = place.camera.FocalX() * ahead + x * place.camera.width * right - y * place.camera.height * upwards;
+    const std::optional<Sighting> seen = LookAlong(world, eye, ray.normalized());
+    if (seen && seen->distance_m < near_m && IsThing(seen->tag.part)) ++n;
+  }
+  return n;
+}
+
+// Of the free places at several distances the first with least in the way, as a photographer steps round a parked car.
+std::optional<Vector3d> PlaceBefore(const PlaceSpec& place, const World& world, const Front& front, double along_m, double distance_m, double pitch_deg) {
+  std::optional<Vector3d> best;
+  int least = 0;
   for (const double factor : kDistanceFactors) {
     const Vector2d at = front.middle + along_m * front.along + factor * distance_m * front.out;
     const Vector3d eye(at.x(), at.y(), GroundZ(world, at) + kEyeHeight_m);
-    if (IsFree(world, eye, kRoomForPhone_m)) return eye;
+    if (!IsFree(world, eye, kRoomForPhone_m)) continue;
+    const int n = RaysInTheWay(place, world, front, eye, pitch_deg, kInTheWay * factor * distance_m);
+    if (best && n >= least) continue;
+    best = eye;
+    least = n;
+    if (n == 0) break;
   }
-  return std::nullopt;
+  return best;
 }
 
 // Nothing when there is no room, or too little sight.
@@ -75,17 +106,18 @@ std::vector<LevelStation> StationsBefore(const PlaceSpec& place, const World& wo
   const double step_per_m = (1.0 - place.forward_overlap) * place.camera.width / place.camera.FocalX();
   const double distance_m = std::clamp(front.length_m / ((n - 1) * step_per_m), kNearestToFront_m, kFarthestFromFront_m);
   const double step_m = std::min(step_per_m * distance_m, front.length_m / (n - 1));
-  const double pitch_deg = std::atan2(0.5 * front.wall_m - kEyeHeight_m, distance_m) * 180.0 / std::numbers::pi;
+  const double to_middle_deg = std::atan2(0.5 * front.wall_m - kEyeHeight_m, distance_m) * 180.0 / std::numbers::pi;
+  const double pitch_deg = std::clamp(to_middle_deg, kLowestPitch_deg, kHighestPitch_deg);
   std::vector<LevelStation> stations;
   int n_see = 0;
   for (int i = 0; i < n; ++i) {
-    const std::optional<Vector3d> eye = FreePlaceBefore(world, front, (i - 0.5 * (n - 1)) * step_m, distance_m);
+    const std::optional<Vector3d> eye = PlaceBefore(place, world, front, (i - 0.5 * (n - 1)) * step_m, distance_m, pitch_deg);
     if (!eye) return {};
     // The ends look past the corners.
     const double inside_m = std::clamp(front.along.dot(eye->head<2>() - front.middle), -0.5 * front.length_m + 0.3, 0.5 * front.length_m - 0.3);
     const Vector2d foot = front.middle + inside_m * front.along;
     if (SeesBuilding(world, *eye, {foot.x(), foot.y(), eye->z()}, *front.building)) ++n_see;
-    stations.push_back({*eye, YawOf(-front.out), std::clamp(pitch_deg, kLowestPitch_deg, kHighestPitch_deg), 0});
+    stations.push_back({*eye, YawOf(-front.out), pitch_deg, 0});
   }
   if (n_see < kShareThatSeesTheWall * n) return {};
   return stations;

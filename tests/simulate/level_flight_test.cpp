@@ -177,6 +177,28 @@ TEST(LevelFlight, AFacadeIsPassedAtItsOverlap) {
   EXPECT_NEAR(base::Median(overlaps), 0.7, 0.08);
 }
 
+// Without the rays that end on a car or a tree nearer than half of the wall.
+TEST(LevelFlight, NoCarStandsBeforeTheLensAtAFacade) {
+  const Level& level = LevelOf("facade");
+  int n_rays = 0, n_blocked = 0;
+  for (const PhotoPlan& photo : level.photos) {
+    const Vector3d eye = photo.cam_from_enu.OriginInSource();
+    const std::optional<Sighting> ahead = LookAlong(level.world, eye, ViewOf(photo));
+    if (!ahead || ahead->tag.part != Part::kWall) continue;
+    for (int i = 0; i < 12 * 9; ++i) {
+      const Eigen::Vector2d pixel(level.place.camera.width * (i % 12 + 0.5) / 12.0, level.place.camera.height * (i / 12 + 0.5) / 9.0);
+      const Vector3d direction = photo.cam_from_enu.rotation.conjugate() * level.place.camera.RayFromImg(pixel);
+      const std::optional<Sighting> seen = LookAlong(level.world, eye, direction);
+      ++n_rays;
+      if (!seen || seen->distance_m > 0.5 * ahead->distance_m) continue;
+      const Part part = seen->tag.part;
+      if (part == Part::kCarBody || part == Part::kCarGlass || part == Part::kCarTyre || part == Part::kLeaves) ++n_blocked;
+    }
+  }
+  ASSERT_GT(n_rays, 8 * 108);
+  EXPECT_LT(n_blocked, 0.05 * n_rays);
+}
+
 TEST(LevelFlight, AnOrbitLooksAtOneBuildingFromTwoHeights) {
   const Level& level = LevelOf("orbit");
   std::map<int, std::vector<double>> heights;

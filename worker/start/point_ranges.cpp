@@ -34,6 +34,9 @@ constexpr size_t kMostPointsAbove = 20'000;
 // Nothing is nearer to a camera, in any direction, than this share of the distance of the nearest point but a few, which may be wrong.
 constexpr double kFreeBall = 0.8;
 constexpr size_t kWrongPoints = 4;
+// Points around a camera that show how low the floor is and how high the ceiling: a tenth of all, and at least so many.
+constexpr size_t kAroundShare = 10, kLeastAround = 64;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 size_t IndexOf(int row, int column) {
   return static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column);
@@ -75,6 +78,10 @@ PointRanges::PointRanges(const survey::Survey& survey, const RaySource& source, 
   } else {
     threads.ParallelFor(static_cast<int64_t>(training.size()), [&](int64_t i, int) { FindOpenSky(training[static_cast<size_t>(i)]); });
   }
+  if (std::ranges::any_of(ranges_, &Range::Sky)) {
+    for (FreeBall& ball : free_balls_) ball.ceiling_m = kInfinite;
+  }
+  threads.ParallelFor(static_cast<int64_t>(training.size()), [&](int64_t i, int) { KeepFloorAndCeiling(source, training[static_cast<size_t>(i)]); });
 }
 
 std::vector<PointRanges::Points> PointRanges::FindRanges(const survey::Survey& survey, const RaySource& source, int photo,
@@ -100,7 +107,7 @@ std::vector<PointRanges::Points> PointRanges::FindRanges(const survey::Survey& s
   for (int row = 0; row < kTileRows; ++row) {
     for (int column = 0; column < kTileColumns; ++column) {
       Range& range = ranges_[static_cast<size_t>(first_[static_cast<size_t>(photo)]) + IndexOf(row, column)];
-      range = {near, kInfiniteDistance, 0.0F, kInfiniteDistance, 0};
+      range = {.near = near, .nearest = kInfiniteDistance, .farthest = 0.0F, .far = kInfiniteDistance};
       bool close = false;
       for (const int reach : kReaches) {
         for (int y = std::max(0, row - reach); y <= std::min(kTileRows - 1, row + reach); ++y) {
@@ -258,15 +265,48 @@ void PointRanges::FindFreeBalls(const survey::Survey& survey, const std::vector<
   free_balls_.resize(photos.size());
   threads.ParallelFor(static_cast<int64_t>(photos.size()), [&](int64_t i, int) {
     const Eigen::Vector3d eye = cam_from_enu_[static_cast<size_t>(photos[static_cast<size_t>(i)])].OriginInSource();
-    std::vector<double> distances;
-    for (size_t point = 0; point < survey.points.size(); point += stride) distances.push_back((survey.points[point].x_in_enu - eye).norm());
-    std::nth_element(distances.begin(), distances.begin() + kWrongPoints, distances.end());
-    free_balls_[static_cast<size_t>(i)] = {eye, kFreeBall * distances[kWrongPoints]};
+    std::vector<std::pair<double, double>> points;  // distance and height
+    for (size_t point = 0; point < survey.points.size(); point += stride) {
+      const Eigen::Vector3d& x = survey.points[point].x_in_enu;
+      points.emplace_back((x - eye).norm(), x.z());
+    }
+    std::sort(points.begin(), points.end());
+    FreeBall& ball = free_balls_[static_cast<size_t>(i)];
+    ball = {eye, kFreeBall * points[kWrongPoints].first, -kInfinite, kInfinite};
+    const size_t around = std::min(points.size(), std::max(points.size() / kAroundShare, kLeastAround));
+    std::vector<double> height;
+    for (size_t k = 0; k < around; ++k) height.push_back(points[k].second);
+    std::sort(height.begin(), height.end());
+    if (height.size() <= kWrongPoints) return;
+    // All points above the eye say nothing about the floor, nor those below it about the ceiling.
+    if (const double floor = height[kWrongPoints]; floor < eye.z()) ball.floor_m = floor;
+    if (const double ceiling = height[height.size() - 1 - kWrongPoints]; ceiling > eye.z()) ball.ceiling_m = ceiling;
   });
 }
 
-bool PointRanges::InFreeSpace(const Eigen::Vector3d& x_in_enu) const {
-  return std::ranges::any_of(free_balls_, [&](const FreeBall& ball) { return (x_in_enu - ball.centre_enu).norm() < ball.radius_m; });
+void PointRanges::KeepFloorAndCeiling(const RaySource& source, int photo) {
+  if (free_balls_.empty()) return;
+  const auto first = static_cast<size_t>(first_[static_cast<size_t>(photo)]);
+  const FreeBall& ball = free_balls_[first / kTiles];
+  for (int row = 0; row < kTileRows; ++row) {
+    for (int column = 0; column < kTileColumns; ++column) {
+      Eigen::Vector3d origin, direction;
+      source.RayThrough(photo, source.TileCentre({photo, static_cast<int16_t>(column), static_cast<int16_t>(row)}), &origin, &direction);
+      const double height_m = (direction.z() < 0.0 ? ball.floor_m : ball.ceiling_m) - origin.z();
+      const double distance_m = direction.z() != 0.0 ? height_m / direction.z() : kInfinite;
+      Range& range = ranges_[first + IndexOf(row, column)];
+      range.plane = static_cast<float>(distance_m);
+      range.near = std::min(range.near, kNearSlack * range.plane);
+    }
+  }
+}
+
+bool PointRanges::InFreeSpace(const Eigen::Vector3d& x_in_enu, double radius_m) const {
+  return std::ranges::any_of(free_balls_, [&](const FreeBall& ball) {
+    const Eigen::Vector3d from_eye = x_in_enu - ball.centre_enu;
+    return from_eye.norm() + radius_m < ball.radius_m && from_eye.z() - radius_m > kFreeBall * (ball.floor_m - ball.centre_enu.z()) &&
+           from_eye.z() + radius_m < kFreeBall * (ball.ceiling_m - ball.centre_enu.z());
+  });
 }
 
 const PointRanges::Range& PointRanges::Of(const Tile& tile) const {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/survey/survey.h"
@@ -15,10 +16,13 @@ namespace skyquilt::worker {
 class PointRanges {
  public:
   struct Range {
-    float near = 0.0F;     // 0.8 of the distance of the nearest point around the tile, or of the photo's nearest points where none is around it
+    // 0.8 of the distance of the nearest point around the tile, or of the photo's nearest points where none is around it; at most 0.8 of the way to
+    // the floor and to the ceiling
+    float near = 0.0F;
     float nearest = 0.0F;  // of the points around the tile; infinite: none
     float farthest = 0.0F;
-    float far = 0.0F;  // 1.25 times that of the farthest; infinite: none
+    float far = 0.0F;    // 1.25 times that of the farthest; infinite: none
+    float plane = std::numeric_limits<float>::infinity();  // distance of the floor or the ceiling; infinite: not known
     // Tiles from here to the nearest that shows anything but sky; 0: this one does. There are no points in tiles of sky, they are above the horizon,
     // and their colours are bright, not reddish and much alike up to the upper edge of the photo.
     int open_sky = 0;
@@ -42,9 +46,10 @@ class PointRanges {
   // before the sky. True for photos that were not given.
   bool MayShow(int photo, const Eigen::Vector3d& x_in_enu, double radius_m) const;
 
-  // Whether a place is nearer to the camera of a training photo than 0.8 of the distance of the nearest points, in whatever direction: there the
-  // camera was carried or flown.
-  bool InFreeSpace(const Eigen::Vector3d& x_in_enu) const;
+  // Whether all of a ball around a place is nearer to the camera of a training photo than 0.8 of the distance of the nearest points, in whatever direction, and of the
+  // height of the floor below it and, where no photo shows the sky, of the ceiling above it: there the camera was carried or flown. Floor and ceiling
+  // are as low and as high as the points around the camera, because a plain floor has no points.
+  bool InFreeSpace(const Eigen::Vector3d& x_in_enu, double radius_m) const;
 
  private:
   // Whether a tile has points in it, or around it.
@@ -55,12 +60,15 @@ class PointRanges {
   bool IsIndoors(const survey::Survey& survey, const RaySource& source, const std::vector<int>& photos, base::ThreadPool& threads) const;
   void FindOpenSky(int photo);
   void FindFreeBalls(const survey::Survey& survey, const std::vector<int>& photos, base::ThreadPool& threads);
+  // Leaves floors and ceilings out of what is free along the rays of a photo's tiles.
+  void KeepFloorAndCeiling(const RaySource& source, int photo);
 
   struct FreeBall {
-    Eigen::Vector3d centre_enu;
+    Eigen::Vector3d centre_enu = Eigen::Vector3d::Zero();
     double radius_m = 0.0;
+    double floor_m = 0.0, ceiling_m = 0.0;  // z; infinite where there is none
   };
-  std::vector<FreeBall> free_balls_;  // of the training photos
+  std::vector<FreeBall> free_balls_;  // of the training photos; empty when there are too few points
   std::vector<int32_t> first_;        // per photo of the survey: of its tiles in ranges_; -1: none
   std::vector<Range> ranges_;         // [row][column] of each photo
   std::vector<const camera::Camera*> cameras_;

@@ -69,7 +69,7 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
           const double radius = radius_at(centre);
           if (ranges.Empty()) {
             if (counter.Count(centre, radius, 1) > 0) continue;
-          } else if (!ranges.InFreeSpace(centre) &&
+          } else if (!ranges.InFreeSpace(centre, radius) &&
                      counter.Count(centre, radius, min_views, [&](int photo) { return ranges.MayShow(photo, centre, radius); }) >= min_views) {
             continue;
           }

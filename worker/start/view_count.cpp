@@ -33,7 +33,8 @@ std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Su
         return;
       }
       const PointRanges::Range& range = ranges.Of(all[i]);
-      x = origin + std::sqrt(static_cast<double>(range.nearest) * static_cast<double>(range.farthest)) * direction;
+      const double middle_m = std::sqrt(static_cast<double>(range.nearest) * static_cast<double>(range.farthest));
+      x = origin + std::min(middle_m, static_cast<double>(range.plane)) * direction;
       const auto shows = [&](int photo) { return ranges.MayShow(photo, x, 0.0); };
       enough[i] = !range.Known() || counter.Count(x, 0.0, min_views, shows) >= min_views ? 1 : 0;
     });

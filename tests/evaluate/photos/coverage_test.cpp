@@ -68,6 +68,32 @@ TEST(TrainingViews, StopsCountingAtEnough) {
   EXPECT_EQ(TrainingViews({}).Count({0, 0, 0}, {}, 2), 0);
 }
 
+// A wall from x = -20 to 20 at z = 30 hides the ground below it, but no place that the small pixels beside it may show, and nothing before it.
+TEST(TrainingViews, WhatStandsBeforeAPlaceHidesIt) {
+  TrainingView view = NadirView(0, 0, 100);
+  view.depth_m = image::ImageF(50, 40, 1, 100.0F);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 15; x < 35; ++x) *view.depth_m.At(x, y) = 70.0F;
+  }
+  const TrainingViews views({view, NadirView(0, 0, 100)});
+  EXPECT_FALSE(views.Sees(0, {0, 0, 0}));
+  EXPECT_TRUE(views.Sees(1, {0, 0, 0})) << "without a picture nothing hides it";
+  EXPECT_TRUE(views.Sees(0, {0, 0, 30}));
+  EXPECT_TRUE(views.Sees(0, {0, 0, 28.5})) << "the wall itself, rendered a little too near";
+  EXPECT_FALSE(views.Sees(0, {0, 0, 25}));
+  EXPECT_TRUE(views.Sees(0, {40, 0, 0}));
+  EXPECT_TRUE(views.Sees(0, {20.5, 0, 0})) << "beside the border";
+  EXPECT_FALSE(views.Sees(0, {17.5, 0, 0}));
+  EXPECT_TRUE(views.Sees(0, {49.9, 39.9, 0})) << "in the corner of the frame";
+  EXPECT_EQ(views.Count({0, 0, 0}, views.ByDistance({0, 0, 0}), 2), 1);
+}
+
+TEST(TrainingViews, NothingHidesWhatARayWithoutSurfacePassesOver) {
+  TrainingView view = NadirView(0, 0, 100);
+  view.depth_m = image::ImageF(1, 1, 1, kNanFloat);
+  EXPECT_TRUE(TrainingViews({view}).Sees(0, {0, 0, -1e6}));
+}
+
 // Strong barrel distortion projects points far outside the view into the image.
 TEST(TrainingViews, FoldedDistortionIsNotSeen) {
   TrainingView view = NadirView(0, 0, 100);

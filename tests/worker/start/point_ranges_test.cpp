@@ -151,11 +151,47 @@ TEST_F(PointRangesTest, PixelsOfTheSkyBesideTheWallHaveEmptyRays) {
 TEST_F(PointRangesTest, NothingIsNextToACamera) {
   Photograph(kBlue);
   for (const Eigen::Vector3d& free : {Eigen::Vector3d(0.0, 15.0, 2.0), {0.0, 0.0, 2.0}, {16.0, 0.0, 12.0}, {0.0, -15.0, 2.0}}) {
-    EXPECT_TRUE(ranges_.InFreeSpace(free)) << free.transpose();
+    EXPECT_TRUE(ranges_.InFreeSpace(free, 0.0)) << free.transpose();
   }
   for (const Eigen::Vector3d& not_known : {Eigen::Vector3d(0.0, 17.0, 2.0), {8.0, 17.0, 2.0}, {0.0, -17.0, 2.0}, {40.0, 0.0, 2.0}}) {
-    EXPECT_FALSE(ranges_.InFreeSpace(not_known)) << not_known.transpose();
+    EXPECT_FALSE(ranges_.InFreeSpace(not_known, 0.0)) << not_known.transpose();
   }
+}
+
+// The ground has no points. The lowest are half a metre above it, on the wall.
+TEST_F(PointRangesTest, PlainGroundBeforeACameraIsNotFree) {
+  Photograph(kBlue);
+  EXPECT_TRUE(ranges_.InFreeSpace({0.0, 10.0, 1.0}, 0.0));
+  EXPECT_FALSE(ranges_.InFreeSpace({0.0, 10.0, 1.0}, 0.5)) << "a ball that reaches the ground";
+  EXPECT_FALSE(ranges_.InFreeSpace({0.0, 10.0, 0.5}, 0.0));
+  EXPECT_FALSE(ranges_.InFreeSpace({0.0, 10.0, 0.0}, 0.0));
+  EXPECT_TRUE(ranges_.MayShow(0, {0.0, 6.0, 0.0}, 0.0)) << "the ground in the lower part of the photo";
+  EXPECT_TRUE(ranges_.MayShow(0, {0.0, 6.0, 0.5}, 0.0));
+  EXPECT_FALSE(ranges_.MayShow(0, {0.0, 3.0, 1.0}, 0.0)) << "above the ground";
+}
+
+TEST_F(PointRangesTest, CeilingsAreNotFreeWhereNoPhotoShowsTheSky) {
+  Photograph(kLamplight);
+  EXPECT_TRUE(ranges_.InFreeSpace({0.0, 0.0, 4.0}, 0.0));
+  EXPECT_FALSE(ranges_.InFreeSpace({0.0, 0.0, 9.5}, 0.0));
+  Photograph(kBlue);
+  EXPECT_TRUE(ranges_.InFreeSpace({0.0, 0.0, 9.5}, 0.0));
+}
+
+// Without points below the camera nothing tells how high it is.
+TEST_F(PointRangesTest, PointsAboveACameraAreNoFloor) {
+  Photograph(kBlue);
+  survey_.points.clear();
+  survey_.tracks = {};
+  for (double x = -20.0; x < 36.0; x += 0.5) {
+    survey::SparsePoint point;
+    point.x_in_enu = {x, kWall, 6.0};
+    survey_.points.push_back(point);
+    survey_.tracks.Add({0, 1});
+  }
+  const PointRanges ranges(survey_, *source_, {0, 1}, threads_);
+  EXPECT_TRUE(ranges.InFreeSpace({0.0, 10.0, 0.0}, 0.0));
+  EXPECT_FALSE(ranges.MayShow(0, {0.0, 6.0, 0.0}, 0.0));
 }
 
 TEST_F(PointRangesTest, NothingIsBeforeTheSky) {

@@ -30,6 +30,7 @@ constexpr double kReportPhotos = 3.0;                                  // pictur
 constexpr double kBuildingCells = 0.2e6;                               // cells of the surface per second and thread
 constexpr double kMeshScores = 1.0;                                    // comparing the mesh with a photo, too: as long as comparing the field
 constexpr double kTruthScores_s = 6.0;
+constexpr double kDepthPictureRays = 64.0 * 48.0;
 // Seconds per photo and thread of stage "masks", guessed: networks differ by far more than machines.
 constexpr double kNetworkMask_s = 1.0, kGroundMask_s = 0.4;
 constexpr double kMostCorrection = 6.0;
@@ -149,8 +150,10 @@ double Predictor::EvaluateSeconds(const Settings& settings) const {
   const double pixels = scored * size_.PixelsAt(options.image_width > 0 ? options.image_width : settings.run.image_width);
   const double pictures = std::min(scored, static_cast<double>(options.report_photos)) / (kReportPhotos * size_.threads);
   const double comparing = (settings.surface.enabled ? 1.0 + kMeshScores : 1.0) * pixels / std::max(1.0, rates_.scored_pixels);
+  // Level photos count as covered only what no training photo's small picture of depth hides (evaluate/photos/training_depths.h).
+  const double hiding = size_.level ? size_.TrainingPhotos() * kDepthPictureRays : 0.0;
   const double truth_s = size_.truth && settings.surface.enabled ? kTruthScores_s : 0.0;
-  return 2.0 * kStageStart_s + pictures + RaySeconds(pixels * (options.field_normals ? 2.0 : 1.0)) + comparing + truth_s;
+  return 2.0 * kStageStart_s + pictures + RaySeconds(pixels * (options.field_normals ? 2.0 : 1.0) + hiding) + comparing + truth_s;
 }
 
 double Predictor::Seconds(const std::string& stage, const Settings& settings) const {

@@ -24,7 +24,7 @@ constexpr double kLowestPitch_deg = 8.0, kHighestPitch_deg = 16.0;
 // Of the stations; trees may hide the wall from the others.
 constexpr double kShareThatSeesTheWall = 0.75;
 // Of the distance, where something stands in the way.
-constexpr std::array<double, 7> kDistanceFactors = {1.0, 0.9, 1.1, 0.8, 1.2, 0.7, 1.3};
+constexpr std::array<double, 10> kDistanceFactors = {1.0, 0.9, 1.1, 0.8, 1.2, 0.7, 1.3, 0.6, 1.5, 0.5};
 // Cars and trees nearer than this share of the distance to the wall are in the way of the picture.
 constexpr double kInTheWay = 0.5;
 
@@ -84,7 +84,8 @@ int RaysInTheWay(const PlaceSpec& place, const World& world, const Front& front,
 }
 
 // Of the free places at several distances the first with least in the way, as a photographer steps round a parked car.
-std::optional<Vector3d> PlaceBefore(const PlaceSpec& place, const World& world, const Front& front, double along_m, double distance_m, double pitch_deg) {
+std::optional<Vector3d> PlaceBefore(const PlaceSpec& place, const World& world, const Front& front, double along_m, double distance_m,
+                                    double pitch_deg) {
   std::optional<Vector3d> best;
   int least = 0;
   for (const double factor : kDistanceFactors) {

@@ -67,13 +67,18 @@ double CosineAt(const DepthGrid& grid, int x, int y) {
   return std::min(1.0, std::abs(normal.dot(grid.Direction(x, y))) / length);
 }
 
+double LeastCosine(const DepthLimits& limits) {
+  return std::cos(limits.max_angle_deg * std::numbers::pi / 180.0);
+}
+
 }  // namespace
 
 float TrustedDepth(const render::Ray& ray, const render::RayColor& color, const DepthLimits& limits) {
   if (!(static_cast<double>(color.opacity) >= limits.min_opacity)) return kNoDepth;
   if (!(std::isfinite(color.depth_median) && color.depth_median > 0.0F)) return kNoDepth;
   // False for NaN: a ray that never reaches the back of the surface.
-  if (!(static_cast<double>(color.depth_back) - static_cast<double>(color.depth_front) <= limits.max_spread_m)) return kNoDepth;
+  const double spread_m = static_cast<double>(color.depth_back) - static_cast<double>(color.depth_front);
+  if (!(spread_m * (limits.spread_across ? LeastCosine(limits) : 1.0) <= limits.max_spread_m)) return kNoDepth;
   const Eigen::Vector3d point = ray.origin_enu + static_cast<double>(color.depth_median) * ray.direction_enu;
   const bool inside = (point.array() >= limits.min_enu.array()).all() && (point.array() <= limits.max_enu.array()).all();
   return inside ? color.depth_median : kNoDepth;
@@ -92,7 +97,7 @@ void FilterDepths(RenderedView& view, const DepthLimits& limits, base::ThreadPoo
   });
 
   view.cosine.assign(smooth.size(), 0);
-  const double least_cosine = std::cos(limits.max_angle_deg * std::numbers::pi / 180.0);
+  const double least_cosine = LeastCosine(limits);
   const DepthGrid grid(view.pose, smooth);
   threads.ParallelFor(view.pose.height, [&](int64_t row, int) {
     for (int x = 0; x < width; ++x) {
@@ -101,10 +106,12 @@ void FilterDepths(RenderedView& view, const DepthLimits& limits, base::ThreadPoo
       if (std::isnan(smooth[i])) continue;
       const double cosine = CosineAt(grid, x, static_cast<int>(row));
       if (cosine < least_cosine) continue;
+      if (limits.spread_across && !(static_cast<double>(view.spread_m[i]) * cosine <= limits.max_spread_m)) continue;
       view.depth_m[i] = smooth[i];
       view.cosine[i] = static_cast<uint8_t>(std::max(1L, std::lround(255.0 * cosine)));
     }
   });
+  view.spread_m = {};
 }
 
 }  // namespace skyquilt::surface

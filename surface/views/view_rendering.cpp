@@ -40,6 +40,7 @@ DepthLimits LimitsOf(const SurfaceInput& input, double voxel_m) {
           // From above every ray ends on the ground, and one that does not met a hole of the field.
           .max_free_opacity = survey::LooksLevel(*input.survey) ? kFreeOpacity : -1.0,
           .max_spread_m = options.max_spread_voxels * voxel_m,
+          .spread_across = survey::LooksLevel(*input.survey),
           .max_step_m = kMaxStepVoxels * voxel_m,
           .max_angle_deg = kMaxAngle_deg,
           .min_enu = box.min_enu,
@@ -52,6 +53,7 @@ RenderedView RenderView(const ViewPose& pose, const RayCaster& caster, const Dep
   RenderedView view;
   view.pose = pose;
   view.depth_m.assign(static_cast<size_t>(n_pixels), std::numeric_limits<float>::quiet_NaN());
+  if (limits.spread_across) view.spread_m.assign(static_cast<size_t>(n_pixels), 0.0F);
   const Eigen::Vector3d centre = pose.Centre();
   std::vector<render::Ray> candidates, rays;
   std::vector<size_t> pixel_of, free_pixels;
@@ -78,6 +80,7 @@ RenderedView RenderView(const ViewPose& pose, const RayCaster& caster, const Dep
     }
     for (size_t i = 0; i < rays.size(); ++i) {
       view.depth_m[pixel_of[i]] = TrustedDepth(rays[i], colors[i], limits);
+      if (limits.spread_across) view.spread_m[pixel_of[i]] = colors[i].depth_back - colors[i].depth_front;
       if (static_cast<double>(colors[i].opacity) <= limits.max_free_opacity) free_pixels.push_back(pixel_of[i]);
     }
     on_pixels(count);

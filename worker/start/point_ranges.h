@@ -21,7 +21,7 @@ class PointRanges {
     float near = 0.0F;
     float nearest = 0.0F;  // of the points around the tile; infinite: none
     float farthest = 0.0F;
-    float far = 0.0F;    // 1.25 times that of the farthest; infinite: none
+    float far = 0.0F;                                      // 1.25 times that of the farthest; infinite: none
     float plane = std::numeric_limits<float>::infinity();  // distance of the floor or the ceiling; infinite: not known
     // Tiles from here to the nearest that shows anything but sky; 0: this one does. There are no points in tiles of sky, they are above the horizon,
     // and their colours are bright, not reddish and much alike up to the upper edge of the photo.
@@ -46,9 +46,9 @@ class PointRanges {
   // before the sky. True for photos that were not given.
   bool MayShow(int photo, const Eigen::Vector3d& x_in_enu, double radius_m) const;
 
-  // Whether all of a ball around a place is nearer to the camera of a training photo than 0.8 of the distance of the nearest points, in whatever direction, and of the
-  // height of the floor below it and, where no photo shows the sky, of the ceiling above it: there the camera was carried or flown. Floor and ceiling
-  // are as low and as high as the points around the camera, because a plain floor has no points.
+  // Whether all of a ball around a place is nearer to the camera of a training photo than 0.8 of the distance of the nearest points, in whatever
+  // direction, and of the height of the floor below it and, where no photo shows the sky, of the ceiling above it: there the camera was carried or
+  // flown. Floor and ceiling are as low and as high as the points around the camera, because a plain floor has no points.
   bool InFreeSpace(const Eigen::Vector3d& x_in_enu, double radius_m) const;
 
  private:

@@ -15,8 +15,8 @@ namespace skyquilt::worker {
 
 // The tiles of the training photos among `photos` whose ground at least min_views of these photos see, including their own. The ground of a tile is
 // where its centre ray meets `surface`; tiles that miss it are kept. All tiles when none has enough views, when `surface` is empty, and for min_views
-// < 2. Where photos look level (`ranges` is not empty), the surface of a tile is in the middle of its range instead, not below the floor, and photos whose own ranges end
-// before it do not see it. Throws base::Interrupted.
+// < 2. Where photos look level (`ranges` is not empty), the surface of a tile is in the middle of its range instead, not below the floor, and photos
+// whose own ranges end before it do not see it. Throws base::Interrupted.
 std::vector<Tile> TilesWithEnoughViews(const RaySource& source, const survey::Survey& survey, const std::vector<int>& photos,
                                        const scene::HeightMap& surface, const PointRanges& ranges, int min_views, base::ThreadPool& threads);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "surface/views/view_rendering.h"
@@ -115,6 +116,29 @@ TEST(RenderView, DropsBlurredTransparentAndUnknownDepths) {
     kept += good ? 1 : 0;
   }
   EXPECT_GT(kept, 100);
+}
+
+// Ground blurred by 0.8 m of height: along the ray that is 0.8 m from above, and 2.3 m at a cosine of 0.35.
+TEST(RenderView, ThinBlurAtAFlatAngleIsKeptWhereSpreadIsMeasuredAcross) {
+  AnalyticScene scene;
+  scene.has_house = false;
+  double blur_m = 0.8;
+  const ViewPose pose = Tilted(70.0, 41, 15);
+  scene.change = [&](const Eigen::Vector3d& x, render::RayColor& color) {
+    const double cosine = 60.0 / (x - pose.Centre()).norm();
+    color.depth_back = color.depth_front + static_cast<float>(blur_m / cosine);
+  };
+  DepthLimits limits = Limits();
+  const auto n_kept = [&] {
+    const RenderedView view = Render(pose, scene, limits);
+    EXPECT_TRUE(view.spread_m.empty());
+    return std::count_if(view.depth_m.begin(), view.depth_m.end(), [](float depth) { return !std::isnan(depth); });
+  };
+  EXPECT_EQ(n_kept(), 0);
+  limits.spread_across = true;
+  EXPECT_EQ(n_kept(), 41 * 15);
+  blur_m = 1.2;
+  EXPECT_EQ(n_kept(), 0);
 }
 
 TEST(RenderView, DropsDepthsOutsideTheBoxAndCastsNoRaysBesideIt) {

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -15,9 +14,7 @@
 #include "core/base/progress.h"
 #include "core/survey/view_kind.h"
 #include "surface/fusion/fuse.h"
-#include "surface/map_frame.h"
-#include "surface/mesh/simplify.h"
-#include "surface/tile_store.h"
+#include "surface/piece_fuser.h"
 #include "surface/views/see_through.h"
 
 namespace skyquilt::surface {
@@ -26,6 +23,8 @@ namespace {
 constexpr double kLargestGrowth = 3.0;       // of voxels when the memory is short
 constexpr double kOffPlaneVoxels = 3.0;      // of the border of a hole that is closed in its plane
 constexpr double kLevelIslandVoxels = 12.0;  // edge of the smallest square piece that is kept where photos look level
+
+constexpr size_t kPiecesPerMaker = 4;  // where several ranks make them, so that none waits long for the last
 
 // The whole mesh is joined, cleaned and cut into tiles in memory. At most as many copies of it exist at a time: pieces and what they are joined to,
 // or the mesh, its edges and its tiles.
@@ -71,18 +70,19 @@ FuseOptions FuseOptionsOf(const SurfaceOptions& options, double voxel_m) {
   return fuse;
 }
 
-struct Plan {
-  FuseOptions fuse;
-  std::vector<LatticeBox> pieces;
-};
-
 // Pieces that fit in memory, of larger voxels if they must be.
-Plan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
+PiecePlan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
+  double memory_bytes = input.memory_bytes;
+  size_t least_pieces = 1;
+  if (input.pieces != nullptr && input.pieces->Makers() > 0) {
+    memory_bytes = std::min(memory_bytes, input.pieces->MemoryBytes());
+    least_pieces = kPiecesPerMaker * static_cast<size_t>(input.pieces->Makers());
+  }
   double voxel = voxel_m;
   while (true) {
-    Plan plan{FuseOptionsOf(input.options, voxel), {}};
+    PiecePlan plan{FuseOptionsOf(input.options, voxel), {}};
     try {
-      plan.pieces = PlanPieces(views.All(), BoxOf(*input.info, voxel), plan.fuse, input.memory_bytes, threads);
+      plan.pieces = PlanPieces(views.All(), BoxOf(*input.info, voxel), plan.fuse, memory_bytes, threads, least_pieces);
       if (voxel > voxel_m) {
         base::LogWarning(
             "the surface is fused in voxels of {:.3g} m instead of {:.3g} m, because a piece of it would not fit into the memory limit; a "
@@ -97,71 +97,38 @@ Plan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m
   }
 }
 
-// Named after the voxel too, which another memory limit may change.
-std::filesystem::path PieceFile(const SurfaceInput& input, double voxel_m, const LatticeBox& piece) {
-  return input.work_folder / "pieces" /
-         fmt::format("{:016x}_{}_{}_{}_{}.bin", std::bit_cast<uint64_t>(voxel_m), piece.min.x(), piece.min.y(), piece.max.x(), piece.max.y());
-}
-
-// A finished piece from an earlier call; false when there is none, or it is damaged.
-bool LoadPiece(const std::filesystem::path& file, std::vector<MeshTile>* tiles) {
-  if (!std::filesystem::exists(file)) return false;
-  try {
-    *tiles = LoadMeshTiles(file);
-    return true;
-  } catch (const base::InputError& error) {
-    base::LogWarning("{}; the piece is made again", error.what());
-    return false;
+// What ranks can make while this one waits; pieces that they leave are made by FusePieces.
+void MakeElsewhere(const SurfaceInput& input, const PieceFuser& fuser, const std::string& views_key) {
+  if (input.pieces == nullptr || input.pieces->Makers() == 0) return;
+  std::vector<size_t> missing;
+  for (size_t piece = 0; piece < fuser.plan().pieces.size(); ++piece) {
+    if (!fuser.IsMade(piece)) missing.push_back(piece);
   }
+  if (missing.size() < 2) return;
+  const std::filesystem::path job = input.work_folder / "pieces.job";
+  fuser.Write(job, views_key);
+  base::Progress progress("surface mesh on other ranks", static_cast<double>(missing.size()), "pieces");
+  input.pieces->Make(job, missing, [&](size_t) { progress.Advance(); });
+  progress.Finish();
+  std::error_code ignored;
+  std::filesystem::remove(job, ignored);
 }
 
-void SimplifyTiles(std::vector<MeshTile>* tiles, double max_error_m, base::ThreadPool& threads) {
-  if (!(max_error_m > 0.0)) return;
-  threads.ParallelFor(static_cast<int64_t>(tiles->size()), [&](int64_t i, int) {
-    if (base::CancelRequested()) return;
-    MeshTile& tile = (*tiles)[static_cast<size_t>(i)];
-    tile.mesh = Simplify(tile.mesh, max_error_m, &tile.error_m);
-  });
-  base::ThrowIfCancelled();
-}
-
-// Before simplification, while triangles are as small as voxels, so that the new border is smooth.
-void CutToBoundary(const SurfaceInput& input, std::vector<MeshTile>* tiles) {
-  if (!input.boundary) return;
-  const MapFrame frame(*input.info);
-  for (MeshTile& tile : *tiles) {
-    Mesh& mesh = tile.mesh;
-    std::erase_if(mesh.triangle, [&](const Triangle& t) {
-      const Eigen::Vector3d middle = (mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]]) / 3.0;
-      return !input.boundary->Contains(frame.MapFromEnu(middle).head<2>());
-    });
-    DropUnusedVertices(&mesh);
-  }
-}
-
-std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& views, const Plan& plan, base::ThreadPool& threads) {
+std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& views, const PieceFuser& fuser, base::ThreadPool& threads) {
   std::filesystem::create_directories(input.work_folder / "pieces");
+  MakeElsewhere(input, fuser, views.key());
   std::vector<MeshTile> all;
   double bytes = 0.0;
-  size_t done = 0;
-  base::Progress progress("surface mesh", static_cast<double>(plan.pieces.size()), "pieces");
-  for (const LatticeBox& piece : plan.pieces) {
+  const size_t n_pieces = fuser.plan().pieces.size();
+  base::Progress progress("surface mesh", static_cast<double>(n_pieces), "pieces");
+  for (size_t piece = 0; piece < n_pieces; ++piece) {
     base::ThrowIfCancelled();
-    const std::filesystem::path file = PieceFile(input, plan.fuse.voxel_m, piece);
-    std::vector<MeshTile> tiles;
-    if (!LoadPiece(file, &tiles)) {
-      tiles = SplitAlongLattice(FusePiece(views.All(), piece, plan.fuse, threads), kTileVoxels);
-      CutToBoundary(input, &tiles);
-      SimplifyTiles(&tiles, kSimplifyVoxels * plan.fuse.voxel_m, threads);
-      SaveMeshTiles(tiles, file);
-    }
+    std::vector<MeshTile> tiles = fuser.Make(piece, views, threads);
     for (const MeshTile& tile : tiles) bytes += MeshBytes(tile.mesh);
     std::move(tiles.begin(), tiles.end(), std::back_inserter(all));
-    views.ReleasePages();
     progress.Advance();
-    ++done;
     if (const double times = kMeshCopies * bytes / (input.mesh_bytes > 0.0 ? input.mesh_bytes : 0.5 * input.memory_bytes); times > 1.0) {
-      throw MeshTooLarge{times * static_cast<double>(plan.pieces.size()) / static_cast<double>(done)};
+      throw MeshTooLarge{times * static_cast<double>(n_pieces) / static_cast<double>(piece + 1)};
     }
   }
   // In an order that does not depend on the pieces.
@@ -171,11 +138,11 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
 }
 
 // With larger voxels where the whole mesh would not fit into the memory limit: a survey's mesh grows with its area.
-std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads, Plan* plan) {
+std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads, PiecePlan* plan) {
   for (double voxel = voxel_m;;) {
     *plan = MakePlan(input, views, voxel, threads);
     try {
-      return FusePieces(input, views, *plan, threads);
+      return FusePieces(input, views, PieceFuser(*plan, *input.info, input.boundary, input.work_folder), threads);
     } catch (const MeshTooLarge& found) {
       // Triangles are as many as voxels on the surface, so they go with the square.
       voxel = plan->fuse.voxel_m * std::clamp(std::sqrt(found.times), kLeastStep, kLargestStep);
@@ -238,7 +205,7 @@ std::vector<MeshTile> SplitAlongLattice(const Mesh& mesh, int tile_voxels) {
 }
 
 FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
-  Plan plan;
+  PiecePlan plan;
   std::vector<MeshTile> tiles = FuseWithinMemory(input, views, voxel_m, threads, &plan);
   FusedMesh result;
   result.voxel_m = plan.fuse.voxel_m;

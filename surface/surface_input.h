@@ -14,6 +14,7 @@
 #include "core/image/pixel_cache.h"
 #include "core/scene/scene.h"
 #include "core/survey/survey.h"
+#include "surface/piece_service.h"
 #include "surface/surface_options.h"
 
 namespace skyquilt::surface {
@@ -33,6 +34,7 @@ struct SurfaceInput {
   double map_resolution_m = 0.0;                      // cells of the maps
   double memory_bytes = 0.0;                          // the limit, of which the fields of the scene may take half
   double mesh_bytes = 0.0;                            // of them for the mesh of the whole survey; 0: half
+  PieceService* pieces = nullptr;                     // makes pieces of the mesh beside this process; null: nobody does
   std::string work_key;                               // identity of scene and options: results of another key are not used
   std::filesystem::path work_folder;                  // results of finished steps, for going on after an interruption
   std::filesystem::path out_folder;

@@ -24,11 +24,11 @@ enum Tag : int {
   kTagTask = 116,          // 0 -> worker: number of a task, newline, the task (prepare::poses::PoseTask, masks::MaskTask)
   kTagTaskPart = 117,      // worker -> 0: number of a task, newline, how much more of it is done
   kTagTaskEnd = 118,       // worker -> 0: number of a task, newline, nothing or its failure
-  kTagPaint = 119,         // 0 -> worker, while it renders: open this job of an orthophoto (see rendering/rank_painter.h)
-  kTagPaintReady = 120,    // worker -> 0: nothing, or why it cannot
-  kTagTiles = 121,         // 0 -> worker: number of the request, tiles to paint
-  kTagTilesPainted = 122,  // worker -> 0: number of the request, failure or nothing, the tiles' cells
-  kTagPaintEnd = 123,      // 0 -> worker: the orthophoto is painted
+  kTagJobOpen = 119,       // 0 -> worker, while it renders: open this job (see rendering/rank_parts.h)
+  kTagJobReady = 120,      // worker -> 0: nothing, or why it cannot
+  kTagParts = 121,         // 0 -> worker: number of the request, parts of the job to make
+  kTagPartsMade = 122,     // worker -> 0: number of the request, failure or nothing, what was made
+  kTagJobEnd = 123,        // 0 -> worker: the job is done
 };
 
 // Waits for a message. A signal (SIGINT, SIGTERM) does not end the wait, because only rank 0 decides when a worker rank ends.

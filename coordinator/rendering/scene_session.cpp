@@ -1,6 +1,6 @@
 #include "coordinator/rendering/scene_session.h"
 
-#include "coordinator/rendering/rank_painter.h"
+#include "coordinator/rendering/rank_parts.h"
 #include "coordinator/rendering/serve_rays.h"
 #include "core/base/amounts.h"
 #include "core/base/log.h"
@@ -34,7 +34,11 @@ SceneSession::~SceneSession() {
 }
 
 std::unique_ptr<products::TileService> SceneSession::TileServiceFor(const std::filesystem::path& survey_folder) const {
-  return remote_ ? std::make_unique<RankPainter>(comm_, remote_->members(), survey_folder) : nullptr;
+  return remote_ ? TilesOnRanks(comm_, remote_->members(), survey_folder) : nullptr;
+}
+
+std::unique_ptr<surface::PieceService> SceneSession::PieceServiceForMesh() const {
+  return remote_ ? PiecesOnRanks(comm_, remote_->members()) : nullptr;
 }
 
 }  // namespace skyquilt::coordinator

@@ -10,6 +10,7 @@
 #include "core/comm/communicator.h"
 #include "core/scene/scene.h"
 #include "products/photo_map/tile_service.h"
+#include "surface/piece_service.h"
 
 namespace skyquilt::coordinator {
 
@@ -27,6 +28,8 @@ class SceneSession {
   base::ThreadPool& threads() { return threads_; }
   // Paints tiles of orthophotos of this survey on the other ranks; null where this process is the only one. survey_folder: of the project.
   std::unique_ptr<products::TileService> TileServiceFor(const std::filesystem::path& survey_folder) const;
+  // Fuses pieces of a mesh on the other ranks; null where this process is the only one.
+  std::unique_ptr<surface::PieceService> PieceServiceForMesh() const;
 
  private:
   comm::Communicator& comm_;

@@ -3,13 +3,13 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "coordinator/ranks/rank_group.h"
 #include "coordinator/ranks/rank_messages.h"
 #include "coordinator/rendering/block_owners.h"
-#include "coordinator/rendering/rank_painter.h"
+#include "coordinator/rendering/rank_parts.h"
 #include "coordinator/rendering/ray_request.h"
 #include "core/base/errors.h"
 #include "core/base/json_text.h"
@@ -82,9 +82,9 @@ class RayServer {
 };
 
 // The answer to rank 0: nothing, or the failure.
-std::string OpenJob(const std::string& setup, double memory_bytes, base::ThreadPool& threads, std::optional<TilePainter>* painter) {
+std::string OpenJob(const std::string& setup, double memory_bytes, base::ThreadPool& threads, std::unique_ptr<PartMaker>* maker) {
   try {
-    painter->emplace(setup, memory_bytes, threads);
+    *maker = OpenPartMaker(setup, memory_bytes, threads);
   } catch (...) {
     return base::JsonText(ToJson(CurrentFailure()));
   }
@@ -124,15 +124,15 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
     hello["memory_bytes"] = options.MemoryLimitBytes();
     const json part = base::ParseJson(Register(comm, hello, kTagAssignment));
     RayServer server(scene_h5, part);
-    std::optional<TilePainter> painter;
+    std::unique_ptr<PartMaker> maker;
     while (true) {
       const comm::Message message = WaitForMessage(comm);
       if (message.tag == kTagDone) return;
-      if (message.tag == kTagPaintEnd) painter.reset();
+      if (message.tag == kTagJobEnd) maker.reset();
       if (message.tag == kTagRays) comm.Send(0, kTagRayReply, ToBytes(server.Carry(RayRequestFromBytes(message.bytes))));
-      if (message.tag == kTagPaint)
-        comm.Send(0, kTagPaintReady, OpenJob(message.bytes, part.at("memory_bytes").get<double>(), server.threads(), &painter));
-      if (message.tag == kTagTiles && painter) comm.Send(0, kTagTilesPainted, painter->Answer(message.bytes));
+      if (message.tag == kTagJobOpen)
+        comm.Send(0, kTagJobReady, OpenJob(message.bytes, part.at("memory_bytes").get<double>(), server.threads(), &maker));
+      if (message.tag == kTagParts && maker) comm.Send(0, kTagPartsMade, AnswerParts(*maker, message.bytes));
       // Otherwise the reply might stay unsent while this rank works on the next request.
       comm.WaitUntilSent();
     }

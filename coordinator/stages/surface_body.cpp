@@ -34,6 +34,8 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.vertical = geo::VerticalNamed(settings.products.vertical);
   input.map_resolution_m = grid.resolution_m;
   input.memory_bytes = settings.run.MemoryLimitBytes();
+  const std::unique_ptr<surface::PieceService> pieces = session.PieceServiceForMesh();
+  input.pieces = pieces.get();
   input.work_key = stamp.Hash();
   input.work_folder = project.SurfaceWorkFolder();
   input.out_folder = project.SurfaceFolder();

@@ -29,10 +29,10 @@ struct FuseOptions {
 };
 
 // Pieces whose columns cover all surface in `whole`, none without surface, each small enough to be fused in `memory_bytes`. Only their x and y
-// extents differ; they do not overlap, and do not reach out of `whole`. Throws TooLittleMemory when a single tile needs more memory, naming how
+// extents differ; they do not overlap, and do not reach out of `whole`. At least about least_pieces where there are as many tiles. Throws TooLittleMemory when a single tile needs more memory, naming how
 // much, and when `whole` has more voxels than VertexKey can tell apart; base::Interrupted.
 std::vector<LatticeBox> PlanPieces(std::span<const DepthView> views, const LatticeBox& whole, const FuseOptions& options, double memory_bytes,
-                                   base::ThreadPool& threads);
+                                   base::ThreadPool& threads, size_t least_pieces = 1);
 
 // The least memory, in bytes, with which PlanPieces can plan; 0 when there is no surface. For choosing larger voxels before giving up.
 double LargestTileBytes(std::span<const DepthView> views, const LatticeBox& whole, const FuseOptions& options, base::ThreadPool& threads);

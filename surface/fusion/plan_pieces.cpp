@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "core/base/cancel.h"
@@ -184,7 +185,7 @@ std::vector<TileGroup> GroupTiles(const BytesOfTiles& tiles, double limit_bytes)
 }  // namespace
 
 std::vector<LatticeBox> PlanPieces(std::span<const DepthView> views, const LatticeBox& whole, const FuseOptions& options, double memory_bytes,
-                                   base::ThreadPool& threads) {
+                                   base::ThreadPool& threads, size_t least_pieces) {
   const BytesOfTiles tiles = EstimateTiles(views, whole, options, threads);
   const double limit_bytes = kShareOfMemory * memory_bytes;
   const double largest_bytes = LargestOf(tiles);
@@ -195,8 +196,10 @@ std::vector<LatticeBox> PlanPieces(std::span<const DepthView> views, const Latti
                     "larger voxels with surface.voxel_gsd",
                     std::floor(memory_bytes / kMegabyte), std::ceil(largest_bytes / kShareOfMemory / kMegabyte)));
   }
+  const double all_bytes = std::accumulate(tiles.begin(), tiles.end(), 0.0, [](double sum, const auto& tile) { return sum + tile.second; });
+  const double piece_bytes = std::max(largest_bytes, std::min(limit_bytes, all_bytes / static_cast<double>(std::max<size_t>(least_pieces, 1))));
   std::vector<LatticeBox> pieces;
-  for (const TileGroup& group : GroupTiles(tiles, limit_bytes)) {
+  for (const TileGroup& group : GroupTiles(tiles, piece_bytes)) {
     LatticeBox piece = whole;
     piece.min.x() = std::max(piece.min.x(), group.low.second * options.tile_voxels);
     piece.min.y() = std::max(piece.min.y(), group.low.first * options.tile_voxels);

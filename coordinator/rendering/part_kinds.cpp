@@ -36,6 +36,7 @@ class RankPainter : public products::TileService {
                  .setup = {{"survey", Absolute(survey_folder_)}, {"job", Absolute(job)}},
                  .what = "the orthophoto",
                  .parts = "tiles",
+                 .done = "painted",
                  .at_once = [](int threads) { return static_cast<size_t>(threads); },
                  .ask =
                      [&](std::span<const size_t> parts, base::BytePacker& request) {
@@ -77,6 +78,7 @@ class RankFuser : public surface::PieceService {
                  .setup = {{"job", Absolute(job)}},
                  .what = "the mesh",
                  .parts = "pieces",
+                 .done = "fused",
                  .at_once = [](int /*threads*/) { return size_t{1}; },
                  .ask =
                      [&](std::span<const size_t> parts, base::BytePacker& request) {

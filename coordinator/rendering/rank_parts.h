@@ -30,6 +30,7 @@ class RankParts {
     nlohmann::json setup;                                                              // what a rank needs to open the job
     std::string what;                                                                  // "the orthophoto", for messages
     std::string parts;                                                                 // "tiles"
+    std::string done;                                                                  // "painted"
     std::function<size_t(int threads)> at_once;                                        // parts that a rank with so many threads gets at a time
     std::function<void(std::span<const size_t>, base::BytePacker&)> ask;               // packs what a rank must know of these parts
     std::function<void(std::span<const size_t>, base::ByteUnpacker&)> take;            // unpacks what a rank answers

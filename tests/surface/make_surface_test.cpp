@@ -13,6 +13,7 @@
 #include "surface/fuse_mesh.h"
 #include "surface/fusion/fuse.h"
 #include "surface/map_frame.h"
+#include "surface/piece_fuser.h"
 #include "tests/products/analytic_scene.h"
 #include "tests/support/error_of.h"
 #include "tests/support/nadir_photo.h"
@@ -115,6 +116,59 @@ TEST_F(MakeSurfaceTest, GroundAndRoofAreWhereTheyAre) {
   EXPECT_EQ(table["crs"], "EPSG:32615");
   for (const auto& row : table["files"]) EXPECT_TRUE(fs::exists(input.out_folder / row["file"].get<std::string>())) << row;
   for (const std::string& name : Names(input.out_folder)) EXPECT_EQ(name.find("partial"), std::string::npos) << name;
+}
+
+// As another rank does, but only every second piece. The job and the pictures are read again from their files.
+class HalfOfThePieces : public PieceService {
+ public:
+  int Makers() const override { return 2; }
+  double MemoryBytes() const override { return 1e9; }
+  void Make(const fs::path& job, std::span<const size_t> pieces, const Made& made) override {
+    base::ThreadPool threads(1);
+    DepthViews views;
+    const PieceFuser fuser = PieceFuser::Read(job, &views);
+    for (size_t i = 0; i < pieces.size(); i += 2) {
+      fuser.Make(pieces[i], views, threads);
+      EXPECT_TRUE(fuser.IsMade(pieces[i]));
+      made(pieces[i]);
+      ++n_made;
+    }
+    job_bytes = base::ReadFile(job);
+    views_bytes = base::ReadFile(job.parent_path() / "views.bin");
+  }
+  int n_made = 0;
+  std::string job_bytes, views_bytes;
+};
+
+TEST_F(MakeSurfaceTest, PiecesMadeElsewhereChangeNothing) {
+  const Eigen::Vector2d middle = MapFrame(info_).MapFromEnu(Eigen::Vector3d::Zero()).head<2>();
+  const gis::Boundary boundary({{middle + Eigen::Vector2d(-200, -200), middle + Eigen::Vector2d(200, -200), middle + Eigen::Vector2d(0, 30)}});
+  SurfaceInput alone = Input("alone");
+  alone.boundary = boundary;
+  const SurfaceResult all = MakeSurface(alone, threads_);
+  HalfOfThePieces others;
+  SurfaceInput input = Input("shared");
+  input.boundary = boundary;
+  input.pieces = &others;
+  const SurfaceResult shared = MakeSurface(input, threads_);
+  EXPECT_GE(others.n_made, 2);
+  EXPECT_EQ(shared.triangles, all.triangles);
+  ExpectSameFiles(alone.out_folder, input.out_folder);
+  // What another process refuses.
+  const fs::path job = folder_ / "pieces.job";
+  const auto error_with = [&](const std::string& bytes, const std::string& views) {
+    base::WriteFileAtomically(job, bytes);
+    base::WriteFileAtomically(folder_ / "views.bin", views);
+    DepthViews opened;
+    return ErrorOf<base::InputError>([&] { PieceFuser::Read(job, &opened); });
+  };
+  EXPECT_EQ(error_with(others.job_bytes, others.views_bytes), "");
+  std::string damaged = others.job_bytes;
+  damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] + 1);
+  EXPECT_NE(error_with(damaged, others.views_bytes).find("pieces.job"), std::string::npos);
+  EXPECT_NE(error_with(others.job_bytes.substr(0, 40), others.views_bytes).find("pieces.job"), std::string::npos);
+  EXPECT_NE(error_with("", others.views_bytes).find("pieces.job"), std::string::npos);
+  EXPECT_NE(error_with(others.job_bytes, others.views_bytes.substr(0, 1000)).find("views.bin"), std::string::npos);
 }
 
 TEST_F(MakeSurfaceTest, AnInterruptedRunGoesOnWithTheSameResult) {

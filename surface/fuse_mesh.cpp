@@ -14,6 +14,7 @@
 #include "core/base/progress.h"
 #include "core/survey/view_kind.h"
 #include "surface/fusion/fuse.h"
+#include "surface/mesh/simplify.h"
 #include "surface/piece_fuser.h"
 #include "surface/views/see_through.h"
 
@@ -138,7 +139,8 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
 }
 
 // With larger voxels where the whole mesh would not fit into the memory limit: a survey's mesh grows with its area.
-std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads, PiecePlan* plan) {
+std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads,
+                                       PiecePlan* plan) {
   for (double voxel = voxel_m;;) {
     *plan = MakePlan(input, views, voxel, threads);
     try {

@@ -80,10 +80,7 @@ class RankFuser : public surface::PieceService {
                  .parts = "pieces",
                  .done = "fused",
                  .at_once = [](int /*threads*/) { return size_t{1}; },
-                 .ask =
-                     [&](std::span<const size_t> parts, base::BytePacker& request) {
-                       request.Add(static_cast<uint64_t>(pieces[parts[0]]));
-                     },
+                 .ask = [&](std::span<const size_t> parts, base::BytePacker& request) { request.Add(static_cast<uint64_t>(pieces[parts[0]])); },
                  .take = [&](std::span<const size_t> parts, base::ByteUnpacker&) { made(pieces[parts[0]]); }},
                 pieces.size());
   }

@@ -103,7 +103,8 @@ void RankParts::Make(const Job& job, size_t n_parts) {
     made += parts.size();
     made_by.insert(message.source);
   }
-  if (made > 0) base::LogInfo("{} {} of {} {} by {} other rank{}", made, job.parts, job.what, job.done, made_by.size(), made_by.size() == 1 ? "" : "s");
+  if (made > 0)
+    base::LogInfo("{} {} of {} {} by {} other rank{}", made, job.parts, job.what, job.done, made_by.size(), made_by.size() == 1 ? "" : "s");
 }
 
 std::string AnswerParts(PartMaker& maker, const std::string& request) {

@@ -26,20 +26,20 @@ namespace skyquilt::coordinator {
 class RankParts {
  public:
   struct Job {
-    std::string kind;                                                                  // see OpenPartMaker
-    nlohmann::json setup;                                                              // what a rank needs to open the job
-    std::string what;                                                                  // "the orthophoto", for messages
-    std::string parts;                                                                 // "tiles"
-    std::string done;                                                                  // "painted"
-    std::function<size_t(int threads)> at_once;                                        // parts that a rank with so many threads gets at a time
-    std::function<void(std::span<const size_t>, base::BytePacker&)> ask;               // packs what a rank must know of these parts
-    std::function<void(std::span<const size_t>, base::ByteUnpacker&)> take;            // unpacks what a rank answers
+    std::string kind;                                                        // see OpenPartMaker
+    nlohmann::json setup;                                                    // what a rank needs to open the job
+    std::string what;                                                        // "the orthophoto", for messages
+    std::string parts;                                                       // "tiles"
+    std::string done;                                                        // "painted"
+    std::function<size_t(int threads)> at_once;                              // parts that a rank with so many threads gets at a time
+    std::function<void(std::span<const size_t>, base::BytePacker&)> ask;     // packs what a rank must know of these parts
+    std::function<void(std::span<const size_t>, base::ByteUnpacker&)> take;  // unpacks what a rank answers
   };
 
   // members: the ranks that render.
   RankParts(comm::Communicator& comm, std::vector<GroupMember> members) : comm_(comm), members_(std::move(members)) {}
-  // Calls job.take, in this thread, for all parts that were made. Ranks that fail make no more, with a warning; parts that nobody made are left. Throws
-  // base::Interrupted and what the functions throw.
+  // Calls job.take, in this thread, for all parts that were made. Ranks that fail make no more, with a warning; parts that nobody made are left.
+  // Throws base::Interrupted and what the functions throw.
   void Make(const Job& job, size_t n_parts);
   const std::vector<GroupMember>& members() const { return members_; }
 
@@ -63,8 +63,8 @@ class PartMaker {
   virtual void Make(base::ByteUnpacker& request, base::BytePacker& reply) = 0;
 };
 
-// setup: of a kTagJobOpen message. memory_bytes: that this rank may use for everything. Throws base::InputError when survey, photos or files are not those
-// of rank 0.
+// setup: of a kTagJobOpen message. memory_bytes: that this rank may use for everything. Throws base::InputError when survey, photos or files are not
+// those of rank 0.
 std::unique_ptr<PartMaker> OpenPartMaker(const std::string& setup, double memory_bytes, base::ThreadPool& threads);
 // The answer to a kTagParts message. Failures are part of it.
 std::string AnswerParts(PartMaker& maker, const std::string& request);

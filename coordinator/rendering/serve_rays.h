@@ -1,4 +1,5 @@
-// Rendering on the other ranks: they render the rays that rank 0 sends (see remote_renderer.h), and make parts of jobs: tiles of an orthophoto, pieces of a mesh (rank_parts.h).
+// Rendering on the other ranks: they render the rays that rank 0 sends (see remote_renderer.h), and make parts of jobs: tiles of an orthophoto,
+// pieces of a mesh (rank_parts.h).
 #pragma once
 
 #include <string>

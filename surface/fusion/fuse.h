@@ -29,8 +29,9 @@ struct FuseOptions {
 };
 
 // Pieces whose columns cover all surface in `whole`, none without surface, each small enough to be fused in `memory_bytes`. Only their x and y
-// extents differ; they do not overlap, and do not reach out of `whole`. At least about least_pieces where there are as many tiles. Throws TooLittleMemory when a single tile needs more memory, naming how
-// much, and when `whole` has more voxels than VertexKey can tell apart; base::Interrupted.
+// extents differ; they do not overlap, and do not reach out of `whole`. At least about least_pieces where there are as many tiles. Throws
+// TooLittleMemory when a single tile needs more memory, naming how much, and when `whole` has more voxels than VertexKey can tell apart;
+// base::Interrupted.
 std::vector<LatticeBox> PlanPieces(std::span<const DepthView> views, const LatticeBox& whole, const FuseOptions& options, double memory_bytes,
                                    base::ThreadPool& threads, size_t least_pieces = 1);
 

@@ -270,14 +270,15 @@ void PointRanges::FindFreeBalls(const survey::Survey& survey, const std::vector<
       const Eigen::Vector3d& x = survey.points[point].x_in_enu;
       points.emplace_back((x - eye).norm(), x.z());
     }
-    std::sort(points.begin(), points.end());
-    FreeBall& ball = free_balls_[static_cast<size_t>(i)];
-    ball = {eye, kFreeBall * points[kWrongPoints].first, -kInfinite, kInfinite};
     const size_t around = std::min(points.size(), std::max(points.size() / kAroundShare, kLeastAround));
+    std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(around) - 1, points.end());
+    points.resize(around);
+    FreeBall& ball = free_balls_[static_cast<size_t>(i)];
+    std::nth_element(points.begin(), points.begin() + kWrongPoints, points.end());
+    ball = {eye, kFreeBall * points[kWrongPoints].first, -kInfinite, kInfinite};
     std::vector<double> height;
-    for (size_t k = 0; k < around; ++k) height.push_back(points[k].second);
+    for (const auto& [distance_m, z] : points) height.push_back(z);
     std::sort(height.begin(), height.end());
-    if (height.size() <= kWrongPoints) return;
     // All points above the eye say nothing about the floor, nor those below it about the ceiling.
     if (const double floor = height[kWrongPoints]; floor < eye.z()) ball.floor_m = floor;
     if (const double ceiling = height[height.size() - 1 - kWrongPoints]; ceiling > eye.z()) ball.ceiling_m = ceiling;

@@ -71,9 +71,12 @@ TEST(TrainingViews, StopsCountingAtEnough) {
 // A wall from x = -20 to 20 at z = 30 hides the ground below it, but no place that the small pixels beside it may show, and nothing before it.
 TEST(TrainingViews, WhatStandsBeforeAPlaceHidesIt) {
   TrainingView view = NadirView(0, 0, 100);
-  view.depth_m = image::ImageF(50, 40, 1, 100.0F);
+  view.depth_m = image::ImageF(50, 40, 1);  // a pixel is 2 m of ground wide
   for (int y = 0; y < 40; ++y) {
-    for (int x = 15; x < 35; ++x) *view.depth_m.At(x, y) = 70.0F;
+    for (int x = 0; x < 50; ++x) {
+      const double to_ground_m = Eigen::Vector3d(2.0 * x + 1.0 - 50.0, 2.0 * y + 1.0 - 40.0, 100.0).norm();
+      *view.depth_m.At(x, y) = static_cast<float>((x >= 15 && x < 35 ? 0.7 : 1.0) * to_ground_m);
+    }
   }
   const TrainingViews views({view, NadirView(0, 0, 100)});
   EXPECT_FALSE(views.Sees(0, {0, 0, 0}));

@@ -1,6 +1,6 @@
 // How much of a run's time rank 0 works alone, while other ranks wait, for several numbers of ranks: from the times of the stages of a run of one
-// process. Rays of the scene and tiles of orthophotos are divided evenly among the other ranks, blocks as the scheduler divides them
-// (schedule_bench.h); all else is rank 0's own work: decoding, choosing points, the context, fusion of surfaces, what an orthophoto needs before its
+// process. Rays of the scene, tiles of orthophotos and pieces of meshes are divided evenly among the other ranks, blocks as the scheduler divides
+// them (schedule_bench.h); all else is rank 0's own work: decoding, choosing points, the context, textures, what an orthophoto needs before its
 // tiles, scores.
 #pragma once
 

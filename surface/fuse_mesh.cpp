@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -71,19 +72,20 @@ FuseOptions FuseOptionsOf(const SurfaceOptions& options, double voxel_m) {
   return fuse;
 }
 
+// How many pieces other ranks get at a time; 0: there are none.
+size_t PiecesTogether(const SurfaceInput& input) {
+  return input.pieces == nullptr ? 0 : kPiecesPerMaker * static_cast<size_t>(std::max(0, input.pieces->Makers()));
+}
+
 // Pieces that fit in memory, of larger voxels if they must be.
 PiecePlan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
-  double memory_bytes = input.memory_bytes;
-  size_t least_pieces = 1;
-  if (input.pieces != nullptr && input.pieces->Makers() > 0) {
-    memory_bytes = std::min(memory_bytes, input.pieces->MemoryBytes());
-    least_pieces = kPiecesPerMaker * static_cast<size_t>(input.pieces->Makers());
-  }
+  PieceWishes wishes;
+  if (const size_t together = PiecesTogether(input); together > 0) wishes = {together, input.pieces->MemoryBytes()};
   double voxel = voxel_m;
   while (true) {
-    PiecePlan plan{FuseOptionsOf(input.options, voxel), {}};
+    PiecePlan plan{.fuse = FuseOptionsOf(input.options, voxel), .pieces = {}};
     try {
-      plan.pieces = PlanPieces(views.All(), BoxOf(*input.info, voxel), plan.fuse, memory_bytes, threads, least_pieces);
+      plan.pieces = PlanPieces(views.All(), BoxOf(*input.info, voxel), plan.fuse, input.memory_bytes, threads, wishes, &plan.needs_bytes);
       if (voxel > voxel_m) {
         base::LogWarning(
             "the surface is fused in voxels of {:.3g} m instead of {:.3g} m, because a piece of it would not fit into the memory limit; a "
@@ -98,11 +100,11 @@ PiecePlan MakePlan(const SurfaceInput& input, const DepthViews& views, double vo
   }
 }
 
-// What ranks can make while this one waits; pieces that they leave are made by FusePieces.
-void MakeElsewhere(const SurfaceInput& input, const PieceFuser& fuser, const std::string& views_key) {
-  if (input.pieces == nullptr || input.pieces->Makers() == 0) return;
+// What other ranks can make of the pieces from `first` on, while this one waits; those that they leave are made by FusePieces.
+void MakeElsewhere(const SurfaceInput& input, const PieceFuser& fuser, const std::string& views_key, size_t first) {
+  if (!(fuser.plan().needs_bytes <= input.pieces->MemoryBytes())) return;
   std::vector<size_t> missing;
-  for (size_t piece = 0; piece < fuser.plan().pieces.size(); ++piece) {
+  for (size_t piece = first; piece < std::min(fuser.plan().pieces.size(), first + PiecesTogether(input)); ++piece) {
     if (!fuser.IsMade(piece)) missing.push_back(piece);
   }
   if (missing.size() < 2) return;
@@ -115,16 +117,21 @@ void MakeElsewhere(const SurfaceInput& input, const PieceFuser& fuser, const std
   std::filesystem::remove(job, ignored);
 }
 
-std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& views, const PieceFuser& fuser, base::ThreadPool& threads) {
+std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& views, const PieceFuser& fuser, base::ThreadPool& threads,
+                                 double* fusing_s) {
   std::filesystem::create_directories(input.work_folder / "pieces");
-  MakeElsewhere(input, fuser, views.key());
+  views.ReleasePages();
+  const size_t together = PiecesTogether(input);
   std::vector<MeshTile> all;
   double bytes = 0.0;
   const size_t n_pieces = fuser.plan().pieces.size();
   base::Progress progress("surface mesh", static_cast<double>(n_pieces), "pieces");
   for (size_t piece = 0; piece < n_pieces; ++piece) {
     base::ThrowIfCancelled();
+    if (together > 0 && piece % together == 0) MakeElsewhere(input, fuser, views.key(), piece);
+    const auto start = std::chrono::steady_clock::now();
     std::vector<MeshTile> tiles = fuser.Make(piece, views, threads);
+    *fusing_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (const MeshTile& tile : tiles) bytes += MeshBytes(tile.mesh);
     std::move(tiles.begin(), tiles.end(), std::back_inserter(all));
     progress.Advance();
@@ -139,12 +146,12 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
 }
 
 // With larger voxels where the whole mesh would not fit into the memory limit: a survey's mesh grows with its area.
-std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads,
-                                       PiecePlan* plan) {
+std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads, PiecePlan* plan,
+                                       double* fusing_s) {
   for (double voxel = voxel_m;;) {
     *plan = MakePlan(input, views, voxel, threads);
     try {
-      return FusePieces(input, views, PieceFuser(*plan, *input.info, input.boundary, input.work_folder), threads);
+      return FusePieces(input, views, PieceFuser(*plan, *input.info, input.boundary, input.work_folder), threads, fusing_s);
     } catch (const MeshTooLarge& found) {
       // Triangles are as many as voxels on the surface, so they go with the square.
       voxel = plan->fuse.voxel_m * std::clamp(std::sqrt(found.times), kLeastStep, kLargestStep);
@@ -208,8 +215,8 @@ std::vector<MeshTile> SplitAlongLattice(const Mesh& mesh, int tile_voxels) {
 
 FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
   PiecePlan plan;
-  std::vector<MeshTile> tiles = FuseWithinMemory(input, views, voxel_m, threads, &plan);
   FusedMesh result;
+  std::vector<MeshTile> tiles = FuseWithinMemory(input, views, voxel_m, threads, &plan, &result.fusing_s);
   result.voxel_m = plan.fuse.voxel_m;
   result.tile_size_m = kTileVoxels * plan.fuse.voxel_m;
   const bool any = !tiles.empty();  // also when the boundary left nothing of them

@@ -18,14 +18,15 @@ struct FusedMesh {
   EdgeCounts edges;
   double area_m2 = 0.0;
   double filled_m2 = 0.0;
+  double fusing_s = 0.0;  // seconds in which pieces were fused here or read, which other ranks could have done
 };
 
 // Side of a tile in voxels.
 inline constexpr int kTileVoxels = 256;
 
 // Finished pieces are kept in input.work_folder and not computed again. The result does not depend on the memory limit as long as the voxel stays the
-// same. Throws base::UsageError when even three times larger voxels (eight times for the whole mesh) need too much memory, or when the boundary
-// leaves nothing of the surface.
+// same; how much larger it gets where the whole mesh does not fit depends on the pieces, which are smaller for several ranks. Throws base::UsageError
+// when even three times larger voxels (eight times for the whole mesh) need too much memory, or when the boundary leaves nothing of the surface.
 FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads);
 
 // Bytes that a mesh takes.

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kWorkVersion = "3";  // of the files in the work folder
+constexpr const char* kWorkVersion = "4";  // of the files in the work folder
 
 fs::path TextureFolder(const fs::path& work_folder) {
   return work_folder / "textures";
@@ -115,6 +115,7 @@ class SurfaceBuilder {
       result_.voxel_m = fused.voxel_m;
       result_.area_m2 = fused.area_m2;
       result_.filled_m2 = fused.filled_m2;
+      result_.fusing_s = fused.fusing_s;
       edges_ = fused.edges;
       for (const MeshTile& tile : fused.tiles) result_.triangles += static_cast<int64_t>(tile.mesh.triangle.size());
       if (result_.triangles == 0) {
@@ -129,7 +130,7 @@ class SurfaceBuilder {
     WriteSurfaceTable(result_, edges_, frame_, input_.out_folder / "surface.json");
     // Only the textures are needed again, by scores.
     std::error_code ignored;
-    for (const char* done : {"views", "views.bin", "pieces"}) fs::remove_all(input_.work_folder / done, ignored);
+    for (const char* done : {"views", "views.bin", "pieces", "pieces.job"}) fs::remove_all(input_.work_folder / done, ignored);
     RemoveCoarseTextures();
     return std::move(result_);
   }

@@ -19,6 +19,7 @@ struct SurfaceResult {
   int photos = 0, virtual_views = 0;
   std::vector<WrittenFile> files;
   double seconds = 0.0;
+  double fusing_s = 0.0;  // of them, in which pieces of the mesh were fused here, which other ranks could have done
 };
 
 // Steps, each finished before the next and not repeated by a later call with the same work folder: pictures of depth, mesh, levels, textures, files.

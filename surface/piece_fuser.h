@@ -19,6 +19,7 @@ namespace skyquilt::surface {
 struct PiecePlan {
   FuseOptions fuse;
   std::vector<LatticeBox> pieces;
+  double needs_bytes = 0.0;  // memory for the largest of them
 };
 
 class PieceFuser {

@@ -25,7 +25,7 @@ enum Tag : int {
   kTagTaskPart = 117,    // worker -> 0: number of a task, newline, how much more of it is done
   kTagTaskEnd = 118,     // worker -> 0: number of a task, newline, nothing or its failure
   kTagJobOpen = 119,     // 0 -> worker, while it renders: open this job (see rendering/rank_parts.h)
-  kTagJobReady = 120,    // worker -> 0: nothing, or why it cannot
+  kTagJobReady = 120,    // worker -> 0: number of the job, nothing or why it cannot
   kTagParts = 121,       // 0 -> worker: number of the request, parts of the job to make
   kTagPartsMade = 122,   // worker -> 0: number of the request, failure or nothing, what was made
   kTagJobEnd = 123,      // 0 -> worker: the job is done

@@ -6,7 +6,6 @@
 
 #include "coordinator/rendering/rank_parts.h"
 #include "core/base/errors.h"
-#include "core/base/json_text.h"
 #include "products/map_products.h"
 #include "products/photo_map/paint_job.h"
 #include "surface/piece_fuser.h"
@@ -20,7 +19,7 @@ using products::TileArea;
 
 constexpr const char* kOrthophoto = "orthophoto";
 constexpr const char* kMesh = "mesh";
-constexpr double kMeshMemory = 0.5;  // of a rank's, as the fields of its scene may take the other half
+constexpr double kMeshMemory = 2.0;  // a rank's limit: stage "surface" gives half of it to the scene's fields, which ranks report
 
 std::string Absolute(const std::filesystem::path& path) {
   return std::filesystem::absolute(path).string();
@@ -142,8 +141,7 @@ std::unique_ptr<surface::PieceService> PiecesOnRanks(comm::Communicator& comm, s
   return std::make_unique<RankFuser>(comm, std::move(members));
 }
 
-std::unique_ptr<PartMaker> OpenPartMaker(const std::string& setup_text, double memory_bytes, base::ThreadPool& threads) {
-  const json setup = base::ParseJson(setup_text);
+std::unique_ptr<PartMaker> OpenPartMaker(const json& setup, double memory_bytes, base::ThreadPool& threads) {
   if (setup.at("kind") == kMesh) return std::make_unique<MeshPieces>(setup, threads);
   return std::make_unique<TilePainter>(setup, memory_bytes, threads);
 }

@@ -46,7 +46,6 @@ class RankParts {
  private:
   comm::Communicator& comm_;
   std::vector<GroupMember> members_;
-  uint64_t next_request_ = 1;  // never used twice: answers to an earlier call may be late
 };
 
 // survey_folder: of the project; ranks that do not see the same survey and photos paint nothing, with a warning.
@@ -63,9 +62,10 @@ class PartMaker {
   virtual void Make(base::ByteUnpacker& request, base::BytePacker& reply) = 0;
 };
 
-// setup: of a kTagJobOpen message. memory_bytes: that this rank may use for everything. Throws base::InputError when survey, photos or files are not
-// those of rank 0.
-std::unique_ptr<PartMaker> OpenPartMaker(const std::string& setup, double memory_bytes, base::ThreadPool& threads);
+// memory_bytes: that this rank may use for everything. Throws base::InputError when survey, photos or files are not those of rank 0.
+std::unique_ptr<PartMaker> OpenPartMaker(const nlohmann::json& setup, double memory_bytes, base::ThreadPool& threads);
+// The answer to a kTagJobOpen message; leaves `maker` null when the job cannot be opened, which the answer says.
+std::string OpenJob(const std::string& setup, double memory_bytes, base::ThreadPool& threads, std::unique_ptr<PartMaker>* maker);
 // The answer to a kTagParts message. Failures are part of it.
 std::string AnswerParts(PartMaker& maker, const std::string& request);
 

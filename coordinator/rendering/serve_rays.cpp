@@ -81,16 +81,6 @@ class RayServer {
   std::vector<int> owner_;
 };
 
-// The answer to rank 0: nothing, or the failure.
-std::string OpenJob(const std::string& setup, double memory_bytes, base::ThreadPool& threads, std::unique_ptr<PartMaker>* maker) {
-  try {
-    *maker = OpenPartMaker(setup, memory_bytes, threads);
-  } catch (...) {
-    return base::JsonText(ToJson(CurrentFailure()));
-  }
-  return "";
-}
-
 }  // namespace
 
 std::string RenderingSetup(const std::filesystem::path& scene_h5, const RunOptions& options, bool verbose, bool quiet) {
@@ -130,8 +120,10 @@ void ServeRays(comm::Communicator& comm, const std::string& setup_text) {
       if (message.tag == kTagDone) return;
       if (message.tag == kTagJobEnd) maker.reset();
       if (message.tag == kTagRays) comm.Send(0, kTagRayReply, ToBytes(server.Carry(RayRequestFromBytes(message.bytes))));
-      if (message.tag == kTagJobOpen)
+      if (message.tag == kTagJobOpen) {
+        maker.reset();
         comm.Send(0, kTagJobReady, OpenJob(message.bytes, part.at("memory_bytes").get<double>(), server.threads(), &maker));
+      }
       if (message.tag == kTagParts && maker) comm.Send(0, kTagPartsMade, AnswerParts(*maker, message.bytes));
       // Otherwise the reply might stay unsent while this rank works on the next request.
       comm.WaitUntilSent();

@@ -42,7 +42,8 @@ struct Pipeline {
   std::function<tour::ExportParts(const Project& project)> tour_parts = {};
   // Keeps run.within_s in RunStages (timed_run.h); null: the stages take as long as they take.
   std::shared_ptr<TimedRun> timed = {};
-  double rendering_s = 0.0;  // that the present stage has taken for rays and tiles of maps, which other ranks make where there are some
+  double rendering_s =
+      0.0;  // that the present stage has taken for rays, tiles of maps and pieces of meshes, which other ranks make where there are some
   // Results of "train" and "evaluate"; read from their files when the stage had nothing to do.
   scene::TrainReport training = {};
   evaluate::metrics::Metrics metrics = {};

@@ -46,6 +46,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
     input.photos = &*photos;
   }
   const surface::SurfaceResult result = surface::MakeSurface(input, session.threads());
+  pipeline.rendering_s += result.fusing_s;
   base::LogInfo("surface from {} photos and {} virtual views: {} triangles, {} points, {} file(s) in {}: {}", result.photos, result.virtual_views,
                 base::FormatCount(static_cast<double>(result.triangles)), base::FormatCount(static_cast<double>(result.points)), result.files.size(),
                 base::FormatDuration(result.seconds), project.SurfaceFolder().string());

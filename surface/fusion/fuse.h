@@ -3,6 +3,7 @@
 // Lengths are in metres in survey ENU, boxes in indices of the lattice (fusion_lattice.h).
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,12 +29,18 @@ struct FuseOptions {
   double max_angle_deg = 85.0;  // a surface seen at a larger angle from its normal counts as seen at this angle
 };
 
+// For pieces that several processes fuse: as many of them, and as small, where there are enough tiles.
+struct PieceWishes {
+  size_t least_pieces = 1;
+  double memory_bytes = std::numeric_limits<double>::infinity();
+};
+
 // Pieces whose columns cover all surface in `whole`, none without surface, each small enough to be fused in `memory_bytes`. Only their x and y
-// extents differ; they do not overlap, and do not reach out of `whole`. At least about least_pieces where there are as many tiles. Throws
+// extents differ; they do not overlap, and do not reach out of `whole`. needs_bytes: takes the memory that the largest needs. Throws
 // TooLittleMemory when a single tile needs more memory, naming how much, and when `whole` has more voxels than VertexKey can tell apart;
 // base::Interrupted.
 std::vector<LatticeBox> PlanPieces(std::span<const DepthView> views, const LatticeBox& whole, const FuseOptions& options, double memory_bytes,
-                                   base::ThreadPool& threads, size_t least_pieces = 1);
+                                   base::ThreadPool& threads, const PieceWishes& wishes = {}, double* needs_bytes = nullptr);
 
 // The least memory, in bytes, with which PlanPieces can plan; 0 when there is no surface. For choosing larger voxels before giving up.
 double LargestTileBytes(std::span<const DepthView> views, const LatticeBox& whole, const FuseOptions& options, base::ThreadPool& threads);

@@ -185,7 +185,7 @@ std::vector<TileGroup> GroupTiles(const BytesOfTiles& tiles, double limit_bytes)
 }  // namespace
 
 std::vector<LatticeBox> PlanPieces(std::span<const DepthView> views, const LatticeBox& whole, const FuseOptions& options, double memory_bytes,
-                                   base::ThreadPool& threads, size_t least_pieces) {
+                                   base::ThreadPool& threads, const PieceWishes& wishes, double* needs_bytes) {
   const BytesOfTiles tiles = EstimateTiles(views, whole, options, threads);
   const double limit_bytes = kShareOfMemory * memory_bytes;
   const double largest_bytes = LargestOf(tiles);
@@ -197,9 +197,13 @@ std::vector<LatticeBox> PlanPieces(std::span<const DepthView> views, const Latti
                     std::floor(memory_bytes / kMegabyte), std::ceil(largest_bytes / kShareOfMemory / kMegabyte)));
   }
   const double all_bytes = std::accumulate(tiles.begin(), tiles.end(), 0.0, [](double sum, const auto& tile) { return sum + tile.second; });
-  const double piece_bytes = std::max(largest_bytes, std::min(limit_bytes, all_bytes / static_cast<double>(std::max<size_t>(least_pieces, 1))));
+  const double wished_bytes =
+      std::min(kShareOfMemory * wishes.memory_bytes, all_bytes / static_cast<double>(std::max<size_t>(wishes.least_pieces, 1)));
+  const double piece_bytes = std::max(largest_bytes, std::min(limit_bytes, wished_bytes));
   std::vector<LatticeBox> pieces;
+  if (needs_bytes != nullptr) *needs_bytes = 0.0;
   for (const TileGroup& group : GroupTiles(tiles, piece_bytes)) {
+    if (needs_bytes != nullptr) *needs_bytes = std::max(*needs_bytes, group.bytes / kShareOfMemory);
     LatticeBox piece = whole;
     piece.min.x() = std::max(piece.min.x(), group.low.second * options.tile_voxels);
     piece.min.y() = std::max(piece.min.y(), group.low.first * options.tile_voxels);

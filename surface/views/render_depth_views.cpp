@@ -53,7 +53,7 @@ std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double v
   text.append(input.info->config);
   for (const ViewPose& pose : places.training) add_pose(pose);
   if (const double free_opacity = LimitsOf(input, voxel_m).max_free_opacity; free_opacity >= 0.0) add(free_opacity);
-  add(LimitsOf(input, voxel_m).spread_across);
+  if (LimitsOf(input, voxel_m).spread_across) add(true);
   return base::HashHex(text);
 }
 

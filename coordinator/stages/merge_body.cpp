@@ -20,7 +20,7 @@ void MeasureSceneTrust(Pipeline& pipeline) {
   std::filesystem::remove(project.TrustFile());
   if (!pipeline.settings.trust.Measured()) return;
   try {
-    SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet);
+    SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
     const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
     std::filesystem::create_directories(project.PixelCacheFile().parent_path());
     const image::PixelCache pixels =

@@ -60,18 +60,6 @@ void OpenTextureFolder(const fs::path& work_folder, double voxel_m) {
   base::WriteFileAtomically(voxel_file, voxel);
 }
 
-// A texture from an earlier call; false when there is none, or it is damaged.
-bool LoadFinished(const fs::path& file, BakedTile* baked) {
-  if (!fs::exists(file)) return false;
-  try {
-    *baked = LoadBakedTile(file);
-    return true;
-  } catch (const base::InputError& error) {
-    base::LogWarning("{}; the texture is made again", error.what());
-    return false;
-  }
-}
-
 BakeOptions BakeOptionsOf(const SurfaceInput& input, const MeshTile& tile, double voxel_m) {
   BakeOptions bake;
   bake.texel_m = input.options.texel_gsd * input.info->gsd_m * static_cast<double>(1U << static_cast<unsigned>(std::min(tile.id.level, 20)));
@@ -178,7 +166,7 @@ class SurfaceBuilder {
       if (tile.id.level > 0) terrain = {};  // only points of level 0 have classes
       const fs::path file = TextureFolder(input_.work_folder) / (tile.id.Name() + ".bin");
       BakedTile baked;
-      if (!LoadFinished(file, &baked)) {
+      if (!LoadFinished(file, &LoadBakedTile, "the texture", &baked)) {
         baked = baker.Bake(tile, BakeOptionsOf(input_, tile, voxel_m), threads_);
         ClassifyPoints(terrain, frame_, input_.options.terrain_low_m, &baked.points);
         SaveBakedTile(baked, file);

@@ -9,7 +9,6 @@
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
-#include "core/base/log.h"
 #include "core/base/packed_bytes.h"
 #include "surface/fuse_mesh.h"
 #include "surface/map_frame.h"
@@ -26,18 +25,6 @@ namespace fs = std::filesystem;
 constexpr const char* kDamagedJob = "is damaged";
 constexpr const char* kAgain = "Run 'skyquilt surface' again; it makes the file anew";
 constexpr size_t kJobHashChars = 16;
-
-// A finished piece from an earlier call; false when there is none, or it is damaged.
-bool LoadPiece(const fs::path& file, std::vector<MeshTile>* tiles) {
-  if (!fs::exists(file)) return false;
-  try {
-    *tiles = LoadMeshTiles(file);
-    return true;
-  } catch (const base::InputError& error) {
-    base::LogWarning("{}; the piece is made again", error.what());
-    return false;
-  }
-}
 
 void SimplifyTiles(std::vector<MeshTile>* tiles, double max_error_m, base::ThreadPool& threads) {
   if (!(max_error_m > 0.0)) return;
@@ -163,7 +150,7 @@ bool PieceFuser::IsMade(size_t piece) const {
 std::vector<MeshTile> PieceFuser::Make(size_t piece, const DepthViews& views, base::ThreadPool& threads) const {
   const fs::path file = FileOf(piece);
   std::vector<MeshTile> tiles;
-  if (LoadPiece(file, &tiles)) return tiles;
+  if (LoadFinished(file, &LoadMeshTiles, "the piece", &tiles)) return tiles;
   fs::create_directories(file.parent_path());
   tiles = SplitAlongLattice(FusePiece(views.All(), plan_.pieces[piece], plan_.fuse, threads), kTileVoxels);
   views.ReleasePages();

@@ -34,7 +34,7 @@ constexpr size_t kMostPointsAbove = 20'000;
 // Nothing is nearer to a camera, in any direction, than this share of the distance of the nearest point but a few, which may be wrong.
 constexpr double kFreeBall = 0.8;
 constexpr size_t kWrongPoints = 4;
-// Points around a camera that show how low the floor is and how high the ceiling: a tenth of all, and at least so many.
+// Points around a camera, on the map, that show how low the floor is and how high the ceiling: a tenth of all, and at least so many.
 constexpr size_t kAroundShare = 10, kLeastAround = 64;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -265,17 +265,19 @@ void PointRanges::FindFreeBalls(const survey::Survey& survey, const std::vector<
   free_balls_.resize(photos.size());
   threads.ParallelFor(static_cast<int64_t>(photos.size()), [&](int64_t i, int) {
     const Eigen::Vector3d eye = cam_from_enu_[static_cast<size_t>(photos[static_cast<size_t>(i)])].OriginInSource();
-    std::vector<std::pair<double, double>> points;  // distance and height
+    std::vector<double> distances;
+    std::vector<std::pair<double, double>> points;  // distance on the map, and height
     for (size_t point = 0; point < survey.points.size(); point += stride) {
-      const Eigen::Vector3d& x = survey.points[point].x_in_enu;
-      points.emplace_back((x - eye).norm(), x.z());
+      const Eigen::Vector3d from_eye = survey.points[point].x_in_enu - eye;
+      distances.push_back(from_eye.norm());
+      points.emplace_back(from_eye.head<2>().norm(), survey.points[point].x_in_enu.z());
     }
+    FreeBall& ball = free_balls_[static_cast<size_t>(i)];
+    std::nth_element(distances.begin(), distances.begin() + kWrongPoints, distances.end());
+    ball = {eye, kFreeBall * distances[kWrongPoints], -kInfinite, kInfinite};
     const size_t around = std::min(points.size(), std::max(points.size() / kAroundShare, kLeastAround));
     std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(around) - 1, points.end());
     points.resize(around);
-    FreeBall& ball = free_balls_[static_cast<size_t>(i)];
-    std::nth_element(points.begin(), points.begin() + kWrongPoints, points.end());
-    ball = {eye, kFreeBall * points[kWrongPoints].first, -kInfinite, kInfinite};
     std::vector<double> height;
     for (const auto& [distance_m, z] : points) height.push_back(z);
     std::sort(height.begin(), height.end());
@@ -283,6 +285,11 @@ void PointRanges::FindFreeBalls(const survey::Survey& survey, const std::vector<
     if (const double floor = height[kWrongPoints]; floor < eye.z()) ball.floor_m = floor;
     if (const double ceiling = height[height.size() - 1 - kWrongPoints]; ceiling > eye.z()) ball.ceiling_m = ceiling;
   });
+  for (size_t i = 0; i + 1 < free_balls_.size(); ++i) {
+    const FreeBall& next = free_balls_[i + 1];
+    free_balls_[i].reaches_next = survey.photos[static_cast<size_t>(photos[i])].flight == survey.photos[static_cast<size_t>(photos[i + 1])].flight &&
+                                  (next.centre_enu - free_balls_[i].centre_enu).norm() < free_balls_[i].radius_m + next.radius_m;
+  }
 }
 
 void PointRanges::KeepFloorAndCeiling(const RaySource& source, int photo) {
@@ -303,11 +310,22 @@ void PointRanges::KeepFloorAndCeiling(const RaySource& source, int photo) {
 }
 
 bool PointRanges::InFreeSpace(const Eigen::Vector3d& x_in_enu, double radius_m) const {
-  return std::ranges::any_of(free_balls_, [&](const FreeBall& ball) {
+  for (size_t i = 0; i < free_balls_.size(); ++i) {
+    FreeBall ball = free_balls_[i];
+    if (ball.reaches_next) {
+      const FreeBall& next = free_balls_[i + 1];
+      const Eigen::Vector3d way = next.centre_enu - ball.centre_enu;
+      const double t = std::clamp((x_in_enu - ball.centre_enu).dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
+      ball = {ball.centre_enu + t * way, (1.0 - t) * ball.radius_m + t * next.radius_m, std::max(ball.floor_m, next.floor_m),
+              std::min(ball.ceiling_m, next.ceiling_m)};
+    }
     const Eigen::Vector3d from_eye = x_in_enu - ball.centre_enu;
-    return from_eye.norm() + radius_m < ball.radius_m && from_eye.z() - radius_m > kFreeBall * (ball.floor_m - ball.centre_enu.z()) &&
-           from_eye.z() + radius_m < kFreeBall * (ball.ceiling_m - ball.centre_enu.z());
-  });
+    if (from_eye.norm() < ball.radius_m && from_eye.z() - radius_m > kFreeBall * (ball.floor_m - ball.centre_enu.z()) &&
+        from_eye.z() + radius_m < kFreeBall * (ball.ceiling_m - ball.centre_enu.z())) {
+      return true;
+    }
+  }
+  return false;
 }
 
 const PointRanges::Range& PointRanges::Of(const Tile& tile) const {

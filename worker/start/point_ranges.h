@@ -46,9 +46,10 @@ class PointRanges {
   // before the sky. True for photos that were not given.
   bool MayShow(int photo, const Eigen::Vector3d& x_in_enu, double radius_m) const;
 
-  // Whether all of a ball around a place is nearer to the camera of a training photo than 0.8 of the distance of the nearest points, in whatever
-  // direction, and of the height of the floor below it and, where no photo shows the sky, of the ceiling above it: there the camera was carried or
-  // flown. Floor and ceiling are as low and as high as the points around the camera, because a plain floor has no points.
+  // Whether a place is nearer to the camera of a training photo than 0.8 of the distance of the nearest points, in whatever direction, or as near to
+  // the way from such a camera to the next one of the same flight, where the two reach one another: there the camera was carried or flown. All of a
+  // ball around the place must be nearer to it than 0.8 of the height of the floor below and, where no photo shows the sky, of the ceiling above:
+  // plain ones have no points, and are taken to be as low and as high as the points around the camera on the map.
   bool InFreeSpace(const Eigen::Vector3d& x_in_enu, double radius_m) const;
 
  private:
@@ -67,6 +68,7 @@ class PointRanges {
     Eigen::Vector3d centre_enu = Eigen::Vector3d::Zero();
     double radius_m = 0.0;
     double floor_m = 0.0, ceiling_m = 0.0;  // z; infinite where there is none
+    bool reaches_next = false;              // the ball of the next photo of the same flight: what lies between them is free, too
   };
   std::vector<FreeBall> free_balls_;  // of the training photos; empty when there are too few points
   std::vector<int32_t> first_;        // per photo of the survey: of its tiles in ranges_; -1: none

@@ -158,6 +158,16 @@ TEST_F(PointRangesTest, NothingIsNextToACamera) {
   }
 }
 
+// It is as far to this place from the way between the cameras as the nearest points are, but for a part, and farther from either camera.
+TEST_F(PointRangesTest, TheWayFromPhotoToPhotoIsFree) {
+  Photograph(kBlue);
+  const Eigen::Vector3d beside_the_way(8.0, -14.0, 7.0);
+  EXPECT_TRUE(ranges_.InFreeSpace(beside_the_way, 0.0));
+  EXPECT_FALSE(ranges_.InFreeSpace({8.0, -17.0, 7.0}, 0.0));
+  survey_.photos[1].flight = 1;
+  EXPECT_FALSE(PointRanges(survey_, *source_, {0, 1}, threads_).InFreeSpace(beside_the_way, 0.0)) << "nothing went from one to the other";
+}
+
 // The ground has no points. The lowest are half a metre above it, on the wall.
 TEST_F(PointRangesTest, PlainGroundBeforeACameraIsNotFree) {
   Photograph(kBlue);

@@ -19,7 +19,7 @@ constexpr double kShareOfTime = 0.05;
 // Packing takes as much memory as the values themselves, which are billions in large simulated surveys.
 constexpr int64_t kShareOfMemory = 8;
 
-constexpr const char* kScoresVersion = "2";  // of how photos are scored
+constexpr const char* kScoresVersion = "3";  // of how photos are scored
 
 std::string KeyOf(const EvaluateInput& input, const std::vector<int>& held_out) {
   std::string key = std::string(kScoresVersion) + "\n" + input.progress_key + "\n" + input.options.scored_pixels_folder.string() + "\n";

@@ -39,6 +39,7 @@ void ApplySize(const Request& request, coordinator::Settings* settings) {
   if (side < 100) throw base::UsageError("--resize-to must be at least 100, or -1, not " + std::to_string(side));
   settings->prepare.max_image_size = std::min(settings->prepare.max_image_size, side);
   int& width = settings->run.image_width;
+  if (width == coordinator::kAutoWidth) width = coordinator::kLeastAutoWidth;  // a wider one might be chosen than is allowed
   width = width == 0 ? side : std::min(width, side);
 }
 

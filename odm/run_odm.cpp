@@ -40,6 +40,7 @@ class OdmRun {
     lines_.Say("Running dataset stage");
     pipeline_.photos = dataset_.images;
     Rerun();
+    asked_width_ = pipeline_.settings.run.image_width;
     coordinator::RecallLevelSettings(pipeline_);
     lines_.Say("Finished dataset stage");
     if (end_with_ == "dataset") return;
@@ -81,6 +82,8 @@ class OdmRun {
 
   void RunAnew(const std::string& stage) {
     RemoveIfChanged(pipeline_, stage);
+    // Blocks of other photos may have another width.
+    if (stage == "partition" && !coordinator::LoadStamp(pipeline_.project, stage)) pipeline_.settings.run.image_width = asked_width_;
     coordinator::RunStage(pipeline_, stage);
   }
 
@@ -121,6 +124,7 @@ class OdmRun {
   Wishes wishes_;
   StageLines lines_;
   std::string end_with_;
+  int asked_width_ = 0;
   MapCells cells_;
 };
 

@@ -60,6 +60,8 @@ bench::Study Begin(const CommandState& state, const StudyFlags& flags, const Stu
   if (command.overrides) {
     for (const config::Override& entry : command.overrides(flags)) settings.Set(entry);
   }
+  // Variants are compared at one width.
+  if (settings.run.image_width == coordinator::kAutoWidth && flags.within.empty()) settings.run.image_width = coordinator::kLeastAutoWidth;
   bench::StudySurvey survey{.folder = flags.survey, .place = flags.place, .model = flags.model};
   if (survey.folder.empty() && survey.place.empty()) survey.place = flags.quick ? "hamlet" : command.place;
   if (!survey.folder.empty() && !std::filesystem::is_directory(survey.folder)) {

@@ -17,7 +17,7 @@ void AddPartition(CLI::App& app, CommandState& state) {
   AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
                 "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
   AddOptionFlag(*command, overrides, "--image-width", "run.image_width",
-                "scale photos down to this width in pixels for training and scoring; 0: full size");
+                "scale photos down to this width in pixels for training and scoring; 0: full size; auto: by the time");
   AddTimeBudgetFlag(*command, overrides);
   command->add_flag("--restart", flags->restart, "remove the blocks and everything made from them first");
   command->footer(

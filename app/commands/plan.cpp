@@ -55,16 +55,22 @@ class PhotosToPlan {
 };
 
 // The totals that were asked for, or usual ones.
-std::vector<double> TotalsOf(const PlanFlags& flags, const coordinator::Settings& settings, const coordinator::Predictor& predictor) {
+std::vector<double> TotalsOf(const PlanFlags& flags, const coordinator::Settings& settings, const coordinator::Predictor& predictor,
+                             const coordinator::Room& room) {
   std::vector<double> totals;
   for (const std::string& text : flags.within) totals.push_back(ParseDurationSeconds(text));
   if (!totals.empty()) return totals;
   if (settings.run.within_s > 0.0) return {settings.run.within_s};
-  return coordinator::UsualTotals([&](double within_s) { return coordinator::PlanOfNewRun(predictor, settings, within_s); });
+  return coordinator::UsualTotals([&](double within_s) { return coordinator::PlanOfNewRun(predictor, settings, within_s, room); });
 }
 
-void PrintPlans(const PlanFlags& flags, const coordinator::WorkSize& size, const std::vector<coordinator::Plan>& plans,
-                const coordinator::Needs& needs, const coordinator::Room& room, const coordinator::Rates& rates) {
+struct PlanAndNeeds {
+  coordinator::Plan plan;
+  coordinator::Needs needs;
+};
+
+void PrintPlans(const PlanFlags& flags, const coordinator::WorkSize& size, const std::vector<PlanAndNeeds>& plans, const coordinator::Needs& needs,
+                const coordinator::Room& room, const coordinator::Rates& rates) {
   if (flags.json) {
     nlohmann::ordered_json json = {{"photos", size.photos},
                                    {"held_out", size.held_out},
@@ -78,7 +84,10 @@ void PrintPlans(const PlanFlags& flags, const coordinator::WorkSize& size, const
                                      {"rays", rates.rays}}},
                                    {"needs", coordinator::NeedsJson(needs, room)},
                                    {"plans", nlohmann::ordered_json::array()}};
-    for (const coordinator::Plan& plan : plans) json["plans"].push_back(coordinator::PlanJson(plan));
+    for (const PlanAndNeeds& one : plans) {
+      json["plans"].push_back(coordinator::PlanJson(one.plan));
+      json["plans"].back()["needs"] = coordinator::NeedsJson(one.needs, room);
+    }
     std::cout << base::JsonText(json, 2) << "\n";
     return;
   }
@@ -86,9 +95,10 @@ void PrintPlans(const PlanFlags& flags, const coordinator::WorkSize& size, const
                            base::FormatCount(size.photo_pixels), size.held_out, size.ranks, size.machines, base::MachineDescription())
             << fmt::format("measured: {} training samples/s, {}pixels/s searched for features, {:.0f} pairs/s; guessed: {} rays/s\n",
                            base::FormatCount(rates.samples), base::FormatCount(rates.feature_pixels), rates.matched_pairs,
-                           base::FormatCount(rates.rays))
-            << coordinator::NeedsText(needs, room) << "\n";
-  for (const coordinator::Plan& plan : plans) std::cout << "\n" << coordinator::PlanText(plan) << "\n";
+                           base::FormatCount(rates.rays));
+  for (const PlanAndNeeds& one : plans) {
+    std::cout << "\n" << coordinator::PlanText(one.plan) << "\n  " << coordinator::NeedsText(one.needs, room) << "\n";
+  }
 }
 
 void ShowPlans(const CommandState& state, const PlanFlags& flags, const std::vector<config::Override>& overrides) {
@@ -106,8 +116,13 @@ void ShowPlans(const CommandState& state, const PlanFlags& flags, const std::vec
   const coordinator::Predictor predictor(size, rates);
   const coordinator::Needs needs = coordinator::NeedsOf(size, settings);
   const coordinator::Room room = coordinator::RoomFor(flags.out, settings);
-  std::vector<coordinator::Plan> plans;
-  for (const double within_s : TotalsOf(flags, settings, predictor)) plans.push_back(coordinator::PlanOfNewRun(predictor, settings, within_s));
+  std::vector<PlanAndNeeds> plans;
+  for (const double within_s : TotalsOf(flags, settings, predictor, room)) {
+    const coordinator::Plan plan = coordinator::PlanOfNewRun(predictor, settings, within_s, room);
+    coordinator::Settings planned = settings;
+    planned.run.image_width = plan.image_width;
+    plans.push_back({plan, coordinator::NeedsOf(size, planned)});
+  }
   PrintPlans(flags, size, plans, needs, room, rates);
   // Told last, so that the reason is seen beside the numbers.
   coordinator::RequireRoom(needs, room, flags.out);
@@ -130,7 +145,7 @@ void AddPlan(CLI::App& app, CommandState& state) {
       ->type_name("N");
   AddModelFlag(*command, flags->model);
   AddOptionFlag(*command, overrides, "--image-width", "run.image_width",
-                "scale photos down to this width in pixels for training and scoring; 0: full size");
+                "scale photos down to this width in pixels for training and scoring; 0: full size; auto: by the time");
   AddMemoryFlag(*command, overrides);
   command->add_flag("--json", flags->json, "print JSON");
   command->footer(

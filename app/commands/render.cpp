@@ -3,6 +3,7 @@
 
 #include "app/commands/command.h"
 #include "coordinator/rendering/scene_session.h"
+#include "coordinator/stages/training_width.h"
 #include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -153,6 +154,7 @@ void Render(const CommandState& state, const RenderFlags& flags, const std::vect
   }
   const Target target = FindTarget(flags.target);
   coordinator::Settings settings = state.Load(target.project ? ProjectConfig(*target.project) : std::vector<std::filesystem::path>{}, overrides);
+  if (target.project) coordinator::RecallTrainingWidth(*target.project, &settings);
   if (!flags.Anything()) {
     if (!target.project)
       throw base::UsageError("nothing to render from " + flags.target + " was chosen. Give --path, --video, --ortho, --dsm, --trust or --plane");

@@ -62,7 +62,7 @@ void AddRun(CLI::App& app, CommandState& state) {
   AddOptionFlag(*command, overrides, "--altitudes", "partition.altitudes",
                 "altitude above ground in metres of each block, row by row from the south-west, separated by commas");
   AddOptionFlag(*command, overrides, "--image-width", "run.image_width",
-                "scale photos down to this width in pixels for training and scoring; 0: full size");
+                "scale photos down to this width in pixels for training and scoring; 0: full size; auto: by the time");
   AddOptionFlag(*command, overrides, "--holdout", "prepare.holdout",
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddMaskFlags(*command, overrides);

@@ -96,6 +96,7 @@ std::string PresetVerdict(const std::string& preset, const Nearest& nearest) {
 
 config::Override ScoringWidth(const Study& study) {
   int width = study.settings().run.image_width;
+  if (width == coordinator::kAutoWidth) width = coordinator::kLeastAutoWidth;
   if (width == 0) {
     for (const camera::Camera& camera : study.survey().cameras) width = std::max(width, camera.width);
   }

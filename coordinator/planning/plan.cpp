@@ -61,6 +61,7 @@ Plan MakePlan(const PlanRequest& request) {
     times = saved;
     plan.reductions.push_back(reduction);
   }
+  plan.image_width = settings.run.image_width;
   plan.feasible = fits();
   if (trains) {
     plan.training_s = request.fixed_training_s.value_or(std::max(least_training_s(), left_s() - times.after_s));

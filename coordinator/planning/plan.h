@@ -25,6 +25,7 @@ struct Plan {
   double within_s = 0.0;              // the total
   double used_s = 0.0;                // of it, before this plan
   std::vector<PlannedStage> stages;   // that are still to be done, in their order; those that are not made are left out
+  int image_width = 0;                // of photos in training, pixels; 0: full size
   double training_s = 0.0;            // of stage "train", decoding of photos and set-up included; 0 when it is done
   std::vector<Reduction> reductions;  // of those that were offered
   bool feasible = true;               // false: too little time, although all that helps was given up

@@ -26,6 +26,7 @@ std::string PlanText(const Plan& plan) {
   std::string text = fmt::format("plan for {} in all", base::FormatDuration(plan.within_s));
   if (plan.used_s >= 1.0) text += fmt::format(", of which {} are used", base::FormatDuration(plan.used_s));
   text += fmt::format("; the end after {}", base::FormatDuration(plan.EndS()));
+  if (plan.image_width > 0) text += fmt::format("; photos are trained at a width of {} pixels at most", plan.image_width);
   for (const PlannedStage& stage : plan.stages) text += fmt::format("\n  {:<10} {:>8}", stage.name, base::FormatDuration(stage.seconds));
   for (const std::string& given_up : TextsOf(plan.reductions)) text += "\n  for this: " + given_up;
   if (!plan.feasible) {
@@ -42,8 +43,13 @@ std::string NeedsText(const Needs& needs, const Room& room) {
 nlohmann::ordered_json PlanJson(const Plan& plan) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::object();
   for (const PlannedStage& stage : plan.stages) stages[stage.name] = stage.seconds;
-  return {{"within_s", plan.within_s},     {"used_s", plan.used_s}, {"end_s", plan.EndS()},
-          {"training_s", plan.training_s}, {"stages", stages},      {"given_up", TextsOf(plan.reductions)},
+  return {{"within_s", plan.within_s},
+          {"used_s", plan.used_s},
+          {"end_s", plan.EndS()},
+          {"training_s", plan.training_s},
+          {"image_width", plan.image_width},
+          {"stages", stages},
+          {"given_up", TextsOf(plan.reductions)},
           {"feasible", plan.feasible}};
 }
 

@@ -17,6 +17,7 @@ class Predictor {
 
   const WorkSize& size() const { return size_; }
   WorkSize& size() { return size_; }
+  const Rates& rates() const { return rates_; }
   Rates& rates() { return rates_; }
 
   // Seconds; 0 for a stage that these settings do not make. "train" takes its budget, or what its steps take, and before it the photos are decoded.

@@ -73,6 +73,7 @@ double PhotoGsd(const survey::Survey& survey) {
 }  // namespace
 
 double WorkSize::PixelsAt(int image_width) const {
+  if (image_width == kAutoWidth) return PixelsAt(kLeastAutoWidth);
   if (image_width <= 0 || photo_width <= 0 || image_width >= photo_width) return photo_pixels;
   const double scale = static_cast<double>(image_width) / photo_width;
   return photo_pixels * scale * scale;
@@ -83,6 +84,7 @@ double WorkSize::SurfacePixelsAt(int image_width) const {
 }
 
 double WorkSize::GsdAt(int image_width) const {
+  if (image_width == kAutoWidth) return GsdAt(kLeastAutoWidth);
   return image_width > 0 && image_width < photo_width ? photo_gsd_m * photo_width / image_width : photo_gsd_m;
 }
 

@@ -27,7 +27,7 @@ struct WorkSize {
   int ranks = 1;
   int machines = 1;
 
-  // Of one photo scaled down to this width; 0: full size.
+  // Of one photo scaled down to this width; 0: full size; kAutoWidth: as for kLeastAutoWidth.
   double PixelsAt(int image_width) const;
   // The area to map, in pixels of photos of this width.
   double SurfacePixelsAt(int image_width) const;

@@ -8,7 +8,10 @@ std::vector<config::Field<RunOptions>> RunOptions::Fields() {
   using config::Range;
   using O = RunOptions;
   return {
-      {"image_width", &O::image_width, Range{16, 65536}.Or(0), "pixels; photos are scaled down to this width for training and scoring; 0: full size"},
+      {"image_width", &O::image_width, Range{16, 65536}.Or(0).OrWord("auto", kAutoWidth),
+       "pixels; photos are scaled down to this width for training and scoring; 0: full size; auto: 1000, and more where the time for training is "
+       "enough "
+       "for more"},
       {"time_budget_s", &O::time_budget_s, Range{0, 1e8},
        "seconds for the whole training, divided between context and blocks; 0: the steps of [context] and [train] decide"},
       {"within_s", &O::within_s, Range{0, 1e8},

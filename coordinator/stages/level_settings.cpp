@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "coordinator/stages/stage.h"
+#include "coordinator/stages/training_width.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
 #include "core/survey/view_kind.h"
@@ -34,6 +35,7 @@ bool UseLevelSettings(Pipeline& pipeline, const survey::Survey& survey) {
 }
 
 void RecallLevelSettings(Pipeline& pipeline) {
+  RecallTrainingWidth(pipeline, "prepare");
   const Project& project = pipeline.project;
   if (pipeline.restart || !pipeline.level_settings) return;
   const std::optional<StageStamp> prepare = LoadStamp(project, "prepare");

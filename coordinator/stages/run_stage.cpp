@@ -1,6 +1,7 @@
 #include <chrono>
 
 #include "coordinator/stages/stage.h"
+#include "coordinator/stages/training_width.h"
 #include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -59,6 +60,7 @@ void RemoveStagesFrom(const Project& project, const std::string& name) {
 
 void RequireSameConfiguration(Pipeline& pipeline, const std::string& first) {
   if (pipeline.restart) return;
+  RecallTrainingWidth(pipeline, first);
   bool reached = false;
   for (const Stage& stage : Stages()) {
     reached = reached || stage.name == first;
@@ -73,6 +75,8 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
   pipeline.comm.EndAfterStandstill(pipeline.settings.run.rank_timeout_s);
   for (const Stage::RequiredFile& required : stage.required) RequireFile(required.file(project), required.stage, project);
   if (stage.check != nullptr) stage.check(project);
+  RecallTrainingWidth(pipeline, name);
+  if (name == "partition") ChooseTrainingWidth(pipeline);
   // Identify the inputs before a restart removes anything: they may be among the removed files.
   StageStamp stamp{.stage = name, .state = StageStamp::kRunning, .options = StageOptions(stage, pipeline.settings), .inputs = stage.inputs(pipeline)};
   if (pipeline.restart) {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "coordinator/planning/measure_rates.h"
-#include "coordinator/planning/needs.h"
+#include "coordinator/planning/paying_width.h"
 #include "coordinator/planning/plan_text.h"
 #include "coordinator/stages/measure_rays.h"
 #include "coordinator/stages/stage.h"
@@ -109,9 +109,6 @@ std::vector<std::string> TimedRun::Remaining(const Pipeline& pipeline, const std
 Plan TimedRun::PlanFrom(const Pipeline& pipeline, const std::string& first) const {
   PlanRequest request{.within_s = within_s_, .used_s = ledger_.UsedSeconds(), .stages = Remaining(pipeline, first), .settings = pipeline.settings};
   if (!training_is_given_) request.settings.run.time_budget_s = 0.0;
-  for (Reduction& reduction : ReductionsOf(pipeline.settings, predictor_.size())) {
-    if (IndexOf(reduction.stage) >= IndexOf(first) && !IsDecided(pipeline, reduction.stage)) request.reductions.push_back(std::move(reduction));
-  }
   request.seconds = [this](const std::string& stage, const Settings& settings) { return predictor_.Seconds(stage, settings); };
   const StageRecord train = ledger_.Of("train");
   if (training_is_given_) {
@@ -119,10 +116,17 @@ Plan TimedRun::PlanFrom(const Pipeline& pipeline, const std::string& first) cons
   } else if (train.begun) {
     request.fixed_training_s = std::max(1.0, pipeline.settings.run.time_budget_s - train.took_s);
   }
-  return MakePlan(request);
+  const Room room = RoomFor(pipeline.project.folder, pipeline.settings);
+  return PlanWithPayingWidth(predictor_, request.settings, room, [&](const Settings& settings) {
+    request.settings = settings;
+    request.reductions = ReductionsOf(settings, predictor_.size());
+    std::erase_if(request.reductions, [&](const Reduction& one) { return IndexOf(one.stage) < IndexOf(first) || IsDecided(pipeline, one.stage); });
+    return MakePlan(request);
+  });
 }
 
 void TimedRun::CheckRoom(const Pipeline& pipeline) const {
+  // Of the least width: a wider one is chosen only where there is room for it.
   RequireRoom(NeedsOf(predictor_.size(), pipeline.settings), RoomFor(pipeline.project.folder, pipeline.settings), pipeline.project.folder);
 }
 
@@ -149,7 +153,9 @@ void TimedRun::Start(Pipeline& pipeline, const std::filesystem::path& photos, co
   const Plan plan = PlanFrom(pipeline, open.front());
   for (const PlannedStage& stage : plan.stages) ledger_.SetPlanned(stage.name, stage.seconds);
   base::LogInfo("{}", PlanText(plan));
-  base::LogInfo("{}", NeedsText(NeedsOf(predictor_.size(), pipeline.settings), RoomFor(pipeline.project.folder, pipeline.settings)));
+  Settings planned = pipeline.settings;
+  planned.run.image_width = plan.image_width;
+  base::LogInfo("{}", NeedsText(NeedsOf(predictor_.size(), planned), RoomFor(pipeline.project.folder, pipeline.settings)));
   if (!plan.feasible) base::LogWarning("{} are too short for these photos: the run will take longer", base::FormatDuration(within_s_));
   WritePlan(pipeline);
 }
@@ -173,7 +179,9 @@ void TimedRun::LookAtProject(Pipeline& pipeline, const std::string& stage) {
 }
 
 void TimedRun::Decide(Pipeline& pipeline, const std::string& stage) {
-  if (IsDecided(pipeline, stage)) return;
+  // A run that was ended before it had blocks chooses their width anew.
+  const bool has_width = stage != "partition" || pipeline.settings.run.image_width != kAutoWidth;
+  if (IsDecided(pipeline, stage) && has_width) return;
   LookAtProject(pipeline, stage);
   const Plan plan = PlanFrom(pipeline, stage);
   std::vector<config::Override> changes;
@@ -185,6 +193,12 @@ void TimedRun::Decide(Pipeline& pipeline, const std::string& stage) {
   if (!training_is_given_ && stage == "partition") {
     // Only how many blocks can be trained follows from it.
     ApplyTo(pipeline, {{"run.time_budget_s", fmt::format("{:.3f}", plan.training_s)}});
+  }
+  if (stage == "partition" && pipeline.settings.run.image_width == kAutoWidth) {
+    // No change of an option: the stage's stamp has it from now on.
+    ApplyTo(pipeline, {{"run.image_width", std::to_string(plan.image_width)}});
+    base::LogInfo("photos are trained at a width of {} pixels at most, for {} of training", plan.image_width,
+                  base::FormatDuration(plan.training_s));
   }
   if (!training_is_given_ && stage == "train") {
     changes.push_back({"run.time_budget_s", fmt::format("{:.3f}", plan.training_s)});
@@ -264,12 +278,15 @@ void UseTotalTime(Pipeline& pipeline) {
   if (pipeline.settings.run.within_s > 0.0) pipeline.timed = std::make_shared<TimedRun>(pipeline);
 }
 
-Plan PlanOfNewRun(const Predictor& predictor, const Settings& settings, double within_s) {
+Plan PlanOfNewRun(const Predictor& predictor, const Settings& settings, double within_s, const Room& room) {
   PlanRequest request{.within_s = within_s, .used_s = 0.0, .stages = StagesOfRun(), .settings = settings};
-  request.reductions = ReductionsOf(settings, predictor.size());
   request.seconds = [&predictor](const std::string& stage, const Settings& changed) { return predictor.Seconds(stage, changed); };
-  if (GivesTraining(settings)) request.fixed_training_s = predictor.Seconds("train", settings);
-  return MakePlan(request);
+  return PlanWithPayingWidth(predictor, settings, room, [&](const Settings& with_width) {
+    request.settings = with_width;
+    request.reductions = ReductionsOf(with_width, predictor.size());
+    if (GivesTraining(with_width)) request.fixed_training_s = predictor.Seconds("train", with_width);
+    return MakePlan(request);
+  });
 }
 
 }  // namespace skyquilt::coordinator

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/planning/needs.h"
 #include "coordinator/planning/plan.h"
 #include "coordinator/planning/predictor.h"
 #include "coordinator/planning/run_ledger.h"
@@ -63,6 +64,6 @@ class TimedRun {
 void UseTotalTime(Pipeline& pipeline);
 
 // The plan with which a run of these photos would begin, for `skyquilt plan`: no project is needed. predictor: counts and rates.
-Plan PlanOfNewRun(const Predictor& predictor, const Settings& settings, double within_s);
+Plan PlanOfNewRun(const Predictor& predictor, const Settings& settings, double within_s, const Room& room);
 
 }  // namespace skyquilt::coordinator

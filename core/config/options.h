@@ -58,6 +58,8 @@ struct Option {
 // One value in TOML syntax; numbers in the shortest form that reads back to the same bits.
 std::string TomlText(const Value& value);
 std::string TomlText(const FixedOption& fixed);
+// The word for its number, where the range has one.
+std::string TomlText(const Option& option);
 
 template <typename Options>
 std::vector<Option> OptionsOf(Options& options) {
@@ -65,9 +67,10 @@ std::vector<Option> OptionsOf(Options& options) {
   Options defaults;
   for (Field<Options>& field : Options::Fields()) {
     const auto value_in = [&field](Options& object) { return std::visit([&](auto member) { return Value(&(object.*member)); }, field.member); };
-    const bool is_always_written = field.written == Written::kAlways;
-    list.push_back({std::move(field.key), value_in(options), std::move(field.range), std::move(field.help),
-                    is_always_written ? std::string() : TomlText(value_in(defaults))});
+    Option option{std::move(field.key), value_in(defaults), std::move(field.range), std::move(field.help)};
+    if (field.written == Written::kWhenChanged) option.unwritten = TomlText(option);
+    option.value = value_in(options);
+    list.push_back(std::move(option));
   }
   return list;
 }

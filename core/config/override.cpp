@@ -19,8 +19,9 @@ bool Encloses(const std::string& text, char open, char close) {
 }
 
 // The value with the quotes or brackets that TOML needs for this option's type.
-std::string InToml(const std::string& value, const Value& type) {
-  if (std::holds_alternative<std::string*>(type) && !Encloses(value, '"', '"')) {
+std::string InToml(const std::string& value, const Option& option) {
+  const Value& type = option.value;
+  if ((std::holds_alternative<std::string*>(type) || option.range.NumberOf(value)) && !Encloses(value, '"', '"')) {
     std::string text = value;
     return TomlText(&text);
   }
@@ -48,14 +49,14 @@ void ApplyOverride(const Override& entry, const Sections& sections) {
   if (!is_plain) throw base::UsageError("'" + entry.key + "' is not an option: write section.key=value, for instance --set train.steps=4000");
   const Option* option = sections.Find(sections.CurrentName(entry.key, ""));
   const bool is_fixed = sections.FindFixed(entry.key) != nullptr;
-  const std::string value = option != nullptr ? InToml(entry.value, option->value) : is_fixed ? entry.value : "true";
+  const std::string value = option != nullptr ? InToml(entry.value, *option) : is_fixed ? entry.value : "true";
   try {
     // Two lines would be two options.
     if ((entry.key + value).find('\n') != std::string::npos) throw base::InputError(entry.key, "has more than one line", "");
     ReadTomlText(entry.key + " = " + value, "", sections);
   } catch (const base::InputError&) {
     throw base::UsageError(entry.key + " = '" + entry.value + "' is not understood: write the value as in a TOML file, for instance " +
-                           (option == nullptr ? "train.steps = 4000" : entry.key + " = " + TomlText(option->value)));
+                           (option == nullptr ? "train.steps = 4000" : entry.key + " = " + TomlText(*option)));
   }
 }
 

@@ -67,6 +67,12 @@ Range Range::Or(double special) const {
   return wider;
 }
 
+Range Range::OrWord(std::string word, double special) const {
+  Range wider = *this;
+  wider.words_.emplace_back(std::move(word), special);
+  return wider;
+}
+
 Range Range::OrNegative() const {
   Range wider = *this;
   wider.or_negative_ = true;
@@ -80,7 +86,7 @@ Range Range::MultipleOf(int step) const {
 }
 
 bool Range::Contains(double value) const {
-  if (kind_ == Kind::kAnything) return true;
+  if (kind_ == Kind::kAnything || WordFor(value)) return true;
   if (kind_ == Kind::kTexts || !std::isfinite(value)) return false;
   if (std::find(special_.begin(), special_.end(), value) != special_.end() || (or_negative_ && value < 0.0)) return true;
   return value >= min_ && value <= max_ && (step_ == 0 || std::fmod(value, step_) == 0.0);
@@ -90,10 +96,21 @@ bool Range::Contains(const std::string& text) const {
   return kind_ == Kind::kAnything || std::find(choices_.begin(), choices_.end(), text) != choices_.end();
 }
 
+std::optional<double> Range::NumberOf(const std::string& word) const {
+  const auto found = std::find_if(words_.begin(), words_.end(), [&word](const auto& one) { return one.first == word; });
+  return found == words_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::string> Range::WordFor(double number) const {
+  const auto found = std::find_if(words_.begin(), words_.end(), [number](const auto& one) { return one.second == number; });
+  return found == words_.end() ? std::nullopt : std::optional(found->first);
+}
+
 std::string Range::Text() const {
   if (kind_ == Kind::kAnything) return "";
   if (kind_ == Kind::kTexts) return Alternatives(choices_);
   std::vector<std::string> words;
+  for (const auto& [word, number] : words_) words.push_back(word);
   for (const double special : special_) words.push_back(NumberText(special));
   if (or_negative_) words.emplace_back("negative");
   if (min_ <= max_) {

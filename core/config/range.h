@@ -2,7 +2,9 @@
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace skyquilt::config {
@@ -18,6 +20,8 @@ class Range {
 
   // Also allows this number: Range{32, 8192}.Or(0) for an option where 0 means "no change".
   Range Or(double special) const;
+  // Also allows this word, which is read as `special` and written instead of it: Range{16, 65536}.OrWord("auto", -1). `special` itself is not read.
+  Range OrWord(std::string word, double special) const;
   // Also allows every negative number, for options where it means "not set".
   Range OrNegative() const;
   // Allows only multiples of `step` between min and max.
@@ -25,6 +29,9 @@ class Range {
 
   bool Contains(double value) const;
   bool Contains(const std::string& text) const;
+  // The number that a word stands for, and the word for a number; empty where there is none.
+  std::optional<double> NumberOf(const std::string& word) const;
+  std::optional<std::string> WordFor(double number) const;
   // In words: "0.25 to 16", "0 or 32 to 8192", "4 to 256 in steps of 4", "fp32, bf16 or fp16"; empty when every value is allowed.
   std::string Text() const;
 
@@ -34,6 +41,7 @@ class Range {
   double min_ = 0.0;
   double max_ = 0.0;
   std::vector<double> special_;  // allowed in addition
+  std::vector<std::pair<std::string, double>> words_;
   bool or_negative_ = false;
   int step_ = 0;  // 0: all numbers
   std::vector<std::string> choices_;

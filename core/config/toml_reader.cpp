@@ -61,10 +61,20 @@ struct Assign {
   const std::string& origin;
   const std::string& name;  // "section.key"
   const toml::node& node;
+  const Range& range;
 
   void operator()(bool* value) const { *value = Exact<bool>("true or false"); }
   void operator()(int* value) const {
+    if (const auto* word = node.as_string()) {
+      if (const std::optional<double> number = range.NumberOf(word->get())) {
+        *value = static_cast<int>(*number);
+        return;
+      }
+    }
     const auto wide = Exact<int64_t>("a whole number");
+    if (const std::optional<std::string> word = range.WordFor(static_cast<double>(wide))) {
+      throw base::UsageError(From(origin) + name + " = " + std::to_string(wide) + " is not allowed: it must be " + range.Text() + LineOf(node));
+    }
     if (wide < std::numeric_limits<int>::min() || wide > std::numeric_limits<int>::max()) {
       throw base::UsageError(From(origin) + name + " = " + std::to_string(wide) + " is too large or too small" + LineOf(node));
     }
@@ -249,7 +259,7 @@ void ReadTomlText(const std::string& text, const std::string& origin, const Sect
   CollectLeaves(origin, document, "", sections, Describe(sections), leaves);
   for (const auto& [name, node] : leaves) {
     const Option& option = *sections.Find(name);
-    std::visit(Assign{origin, name, *node}, option.value);
+    std::visit(Assign{origin, name, *node, option.range}, option.value);
     const std::string why = WhyForbidden(option);
     if (!why.empty()) throw base::UsageError(From(origin).append(name).append(why).append(LineOf(*node)));
   }

@@ -69,6 +69,12 @@ std::string TomlText(const Value& value) {
   return std::visit([](const auto* v) { return ValueText(*v); }, value);
 }
 
+std::string TomlText(const Option& option) {
+  const auto* const number = std::get_if<int*>(&option.value);
+  const std::optional<std::string> word = number != nullptr ? option.range.WordFor(**number) : std::nullopt;
+  return word ? ValueText(*word) : TomlText(option.value);
+}
+
 std::string TomlText(const FixedOption& fixed) {
   return std::visit([](auto value) { return ValueText(value); }, fixed.value);
 }
@@ -81,9 +87,9 @@ std::string WriteToml(const Sections& sections) {
     out << "[" << entry.name << "]\n";
     for (const Option& option : entry.options) {
       SKYQUILT_CHECK(IsBareKey(option.key), "option key '" + option.key + "'");
-      const std::string value = TomlText(option.value);
+      const std::string value = TomlText(option);
       const Option* inherited = sections.Inherited(entry.name + "." + option.key);
-      if (value == option.unwritten || (inherited != nullptr && value == TomlText(inherited->value))) continue;
+      if (value == option.unwritten || (inherited != nullptr && value == TomlText(*inherited))) continue;
       WriteComment(out, option.help);
       const std::string range = option.range.Text();
       if (!range.empty()) WriteComment(out, "allowed: " + range);
@@ -98,7 +104,7 @@ std::map<std::string, std::string> Flatten(const Sections& sections) {
   for (const Sections::Entry& entry : sections.entries()) {
     for (const Option& option : entry.options) {
       const std::string key = entry.name + "." + option.key;
-      SKYQUILT_CHECK(flat.emplace(key, TomlText(option.value)).second, "option '" + key + "' is described twice");
+      SKYQUILT_CHECK(flat.emplace(key, TomlText(option)).second, "option '" + key + "' is described twice");
     }
   }
   for (const FixedOption& fixed : sections.fixed()) flat.emplace(fixed.key, TomlText(fixed));

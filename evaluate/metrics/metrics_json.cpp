@@ -27,6 +27,7 @@ Json PhotoJson(const photos::PhotoScore& score, bool has_truth) {
   json["width"] = score.width;
   json["height"] = score.height;
   json["psnr"] = NumberOrNull(score.psnr_db);
+  json["psnr_1000"] = NumberOrNull(score.psnr_1000_db);
   json["ssim"] = NumberOrNull(score.ssim);
   json["flip"] = NumberOrNull(score.flip);
   json["coverage"] = NumberOrNull(score.Coverage());

@@ -11,7 +11,8 @@ namespace skyquilt::evaluate::metrics {
 using KeyedNumber = std::pair<const char*, double Metrics::*>;
 
 // Numbers of the whole evaluation.
-inline constexpr std::array<KeyedNumber, 15> kScores = {{{"psnr", &Metrics::psnr},
+inline constexpr std::array<KeyedNumber, 16> kScores = {{{"psnr", &Metrics::psnr},
+                                                         {"psnr_1000", &Metrics::psnr_1000},
                                                          {"ssim", &Metrics::ssim},
                                                          {"flip", &Metrics::flip},
                                                          {"coverage", &Metrics::coverage},

@@ -23,16 +23,17 @@ constexpr size_t kFewestBytesPerPhoto = 160;  // of its numbers; names may be sh
 // Calls visit with every member of a score. The list must be complete: this does not compile otherwise.
 template <typename Score, typename Visit>
 void VisitMembers(Score& score, Visit visit) {
-  auto& [photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, expected_psnr_db, psnr_exif_gain_db,
-         psnr_normal_db, ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops,
-         depth_rmse_m, depth_median_abs_m, render_seconds] = score;
-  visit(photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, expected_psnr_db, psnr_exif_gain_db,
-        psnr_normal_db, ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops,
-        depth_rmse_m, depth_median_abs_m, render_seconds);
+  auto& [photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_1000_db, expected_psnr_db,
+         psnr_exif_gain_db, psnr_normal_db, ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db,
+         fitted_stops, depth_rmse_m, depth_median_abs_m, render_seconds] = score;
+  visit(photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_1000_db, expected_psnr_db,
+        psnr_exif_gain_db, psnr_normal_db, ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db,
+        fitted_stops, depth_rmse_m, depth_median_abs_m, render_seconds);
 }
 
 void AddMeans(const Scores& scores, Metrics* metrics) {
   metrics->psnr = scores.Psnr();
+  metrics->psnr_1000 = MeanOver(scores.photos, &photos::PhotoScore::psnr_1000_db);
   metrics->psnr_normal = MeanOver(scores.photos, &photos::PhotoScore::psnr_normal_db);
   metrics->ssim_normal = MeanOver(scores.photos, &photos::PhotoScore::ssim_normal);
   metrics->psnr_exif_gain = MeanOver(scores.photos, &photos::PhotoScore::psnr_exif_gain_db);

@@ -18,6 +18,10 @@ void AddPictureRows(const metrics::Metrics& metrics, FigureTable* table) {
   table->Row(
       "PSNR", Db(metrics.psnr),
       "Peak signal-to-noise ratio of the rendered picture against the photo, over covered pixels. Higher is better; twice the error is 6 dB less.");
+  if (!std::isnan(metrics.psnr_1000)) {
+    table->Row(fmt::format("PSNR at a width of {} pixels", photos::kCommonWidth), Db(metrics.psnr_1000),
+               "With photo and rendering reduced to this width, so that trainings at different widths can be compared.");
+  }
   table->Row("PSNR, full frame", Db(metrics.psnr_full_frame), "The same over all pixels that no mask excludes.");
   table->Row("SSIM", FormatFixed(metrics.ssim, 3), "Structural similarity over covered pixels. 1 is identical.");
   table->Row("SSIM, full frame", FormatFixed(metrics.ssim_full_frame, 3), "The same over all pixels that no mask excludes.");

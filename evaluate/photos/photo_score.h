@@ -10,6 +10,9 @@
 
 namespace skyquilt::evaluate::photos {
 
+// At which scenes are compared that were trained at different widths, pixels.
+constexpr int kCommonWidth = 1000;
+
 struct PhotoScore {
   int photo = -1;  // index into Survey::photos
   std::string name;
@@ -20,6 +23,7 @@ struct PhotoScore {
   double exposure_gain = 1.0;                               // linear light, from the tags
   std::array<double, 3> predicted_stops = {0.0, 0.0, 0.0};  // predicted gain, applied in addition, per colour
   double psnr_db = kNotMeasured;                            // over the covered pixels
+  double psnr_1000_db = kNotMeasured;                       // the same, photo and rendering averaged to a width of kCommonWidth; wider ones only
   double expected_psnr_db = kNotMeasured;                   // the same, as trust expects it (core/trust/trust.h)
   double psnr_exif_gain_db = kNotMeasured;                  // over the covered pixels, with exposure_gain alone
   double psnr_normal_db = kNotMeasured;  // at normal brightness against a normally exposed photo (evaluate.normal_photos), covered pixels

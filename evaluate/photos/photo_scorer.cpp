@@ -137,6 +137,24 @@ image::BasicImage<T> ResizeNearest(const image::BasicImage<T>& image, int width,
   return resized;
 }
 
+// Of photo and rendering averaged to the common width, over pixels that are covered all through. NaN for images that are narrower.
+double PsnrAtCommonWidth(const image::Image8& photo, const image::ImageF& render, const image::Image8& covered) {
+  if (photo.width < kCommonWidth) return kNotMeasured;
+  const int height = image::ScaledHeight(photo.width, photo.height, kCommonWidth);
+  image::Image8 mask = covered;
+  for (uint8_t& value : mask.data) value = value != 0 ? 255 : 0;
+  mask = image::ResizeMask(mask, kCommonWidth, height);
+  const image::ImageF wanted = image::ToImageF(image::Resize(photo, kCommonWidth, height));
+  const image::ImageF made = image::ToImageF(image::Resize(image::ToImage8(render), kCommonWidth, height));
+  skyquilt::metrics::SquaredError error;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < kCommonWidth; ++x) {
+      if (*mask.At(x, y) != 0) AddPixel(made.At(x, y), wanted.At(x, y), &error);
+    }
+  }
+  return skyquilt::metrics::PsnrOf(error);
+}
+
 // Scores that are not sums over pixels. FLIP spreads its rows over the threads, the others are computed side by side.
 void AddWholeFrameScores(const HeldOutPhoto& task, const FrameComparison& frame, base::ThreadPool& threads, PhotoScore* score) {
   const image::Image8 used = task.UsedPixels();
@@ -186,6 +204,7 @@ PhotoResult ScorePhoto(const HeldOutPhoto& task, std::span<const render::RayColo
   score.covered_pixels = PixelsOf(sums.covered);
   score.psnr_db = skyquilt::metrics::PsnrOf(sums.covered);
   score.psnr_full_db = skyquilt::metrics::PsnrOf(sums.full);
+  score.psnr_1000_db = PsnrAtCommonWidth(task.photo, frame.render, frame.scored);
   AddWholeFrameScores(task, frame, threads, &score);
   findings.scored = std::move(frame.scored);
   findings.z_depth = std::move(frame.z_depth);

@@ -135,7 +135,7 @@ TEST(OptionRanges, AreTheSameInConfigurationFilesAndHelp) {
     const std::string range = one.option.range.Text();
     const std::string key = one.key.substr(one.key.find('.') + 1);
     if (range.empty() || other_units.contains(one.key) || !one.option.unwritten.empty()) continue;
-    const std::string lines = fmt::format("# allowed: {}\n{} = {}\n", range, key, config::TomlText(one.option.value));
+    const std::string lines = fmt::format("# allowed: {}\n{} = {}\n", range, key, config::TomlText(one.option));
     EXPECT_NE(defaults.find(lines), std::string::npos) << one.key;
     for (size_t at = help.find("[" + one.key + "]"); at != std::string::npos; at = help.find("[" + one.key + "]", at + 1)) {
       const std::string shown = "(" + range + ") ";

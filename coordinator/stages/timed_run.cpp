@@ -197,8 +197,7 @@ void TimedRun::Decide(Pipeline& pipeline, const std::string& stage) {
   if (stage == "partition" && pipeline.settings.run.image_width == kAutoWidth) {
     // No change of an option: the stage's stamp has it from now on.
     ApplyTo(pipeline, {{"run.image_width", std::to_string(plan.image_width)}});
-    base::LogInfo("photos are trained at a width of {} pixels at most, for {} of training", plan.image_width,
-                  base::FormatDuration(plan.training_s));
+    base::LogInfo("photos are trained at a width of {} pixels at most, for {} of training", plan.image_width, base::FormatDuration(plan.training_s));
   }
   if (!training_is_given_ && stage == "train") {
     changes.push_back({"run.time_budget_s", fmt::format("{:.3f}", plan.training_s)});

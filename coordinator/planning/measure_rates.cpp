@@ -67,7 +67,8 @@ double TrainingSamples(const worker::TrainOptions& options, base::ThreadPool& th
   field.Initialize(random, parameters.grid, parameters.networks);
   worker::PhaseTimes times(threads.size());
   worker::FieldStep step(target, field, nullptr, worker::LuminancePlan{}, threads, times);
-  worker::RayBatch batch = worker::RandomBatch(options.batch_samples, kSamplesOfRay, field.FeatureRows(), 5);
+  worker::RayBatch batch =
+      worker::RandomBatch(options.batch_samples, kSamplesOfRay, field.FeatureRows(), 5, 1.0 / target.config.grid.finest_resolution);
   worker::StepOptions learning;
   learning.learning_rate = 1e-4;  // keeps densities low, so that no sample is hidden and skipped
   step.Train(batch, learning, parameters, state, nullptr);

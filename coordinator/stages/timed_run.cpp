@@ -244,8 +244,19 @@ void TimedRun::Ended(Pipeline& pipeline, const std::string& stage) {
   if (before) return;
   const StageRecord record = ledger_.Of(stage);
   predictor_.Correct(stage, record.predicted_s, record.took_s);
+  if (stage == "train") TakeTrainingSpeed(pipeline.training);
   base::LogInfo("{} took {} (predicted: {}); {} of {} are used", stage, base::FormatDuration(record.took_s), base::FormatDuration(record.predicted_s),
                 base::FormatDuration(ledger_.UsedSeconds()), base::FormatDuration(within_s_));
+}
+
+// Hours of training tell more of the machine's speed than a trial of a second.
+void TimedRun::TakeTrainingSpeed(const scene::TrainReport& training) {
+  double samples = 0.0, thread_seconds = 0.0;
+  for (const scene::FieldTraining& field : training.fields) {
+    samples += static_cast<double>(field.samples);
+    thread_seconds += field.seconds * field.threads;
+  }
+  if (samples > 0.0 && thread_seconds > 0.0) predictor_.rates().TakeSamples(samples / thread_seconds * predictor_.size().threads);
 }
 
 void TimedRun::GaveUp(const std::string& stage, const std::string& what, const std::string& text) {

@@ -50,6 +50,7 @@ class TimedRun {
   Plan PlanFrom(const Pipeline& pipeline, const std::string& first) const;
   void ApplyTo(Pipeline& pipeline, const std::vector<config::Override>& changes) const;
   void LookAtProject(Pipeline& pipeline, const std::string& stage);
+  void TakeTrainingSpeed(const scene::TrainReport& training);
   void CheckRoom(const Pipeline& pipeline) const;
   void WritePlan(const Pipeline& pipeline) const;
 

@@ -7,8 +7,8 @@
 
 namespace skyquilt::worker {
 
-// Rays whose samples are at random positions in the unit cube, with random colours and directions; laid out for a field with so many rows of
-// features. At least one ray.
-RayBatch RandomBatch(int64_t samples, int samples_per_ray, int feature_rows, uint64_t seed);
+// Rays with random colours and directions, whose samples are in the unit cube: at random positions, or, with a step, one after another along the ray
+// from a random place, as in training. Laid out for a field with so many rows of features. At least one ray.
+RayBatch RandomBatch(int64_t samples, int samples_per_ray, int feature_rows, uint64_t seed, double step = 0.0);
 
 }  // namespace skyquilt::worker

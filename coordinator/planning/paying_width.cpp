@@ -6,8 +6,8 @@
 namespace skyquilt::coordinator {
 namespace {
 
-// Training samples for each pixel of the training photos from which wider photos give sharper results (docs/experiments/width.md).
-constexpr double kSamplesPerPixel = 12.0;
+// Training samples for each pixel of the training photos from which wider ones are no less sharp (docs/experiments/capacity-and-encodings.md).
+constexpr double kSamplesPerPixel = 20.0;
 constexpr double kStep = 0.8;
 constexpr double kMemoryShare = 0.5;
 constexpr double kBytesPerPixel = 3.0;

@@ -1,6 +1,6 @@
 // Chooses the width to which photos are scaled down for training, where run.image_width is "auto": as wide as the training can use. A wider photo
 // has more pixels to learn, more blocks and finer maps; with too few samples for its pixels it ends less sharp than a smaller one. Measured in
-// docs/experiments/width.md. Pure: no clock, no files.
+// docs/experiments/capacity-and-encodings.md. Pure: no clock, no files.
 #pragma once
 
 #include <functional>

@@ -9,6 +9,9 @@ namespace {
 // Training samples for each pixel of the training photos from which wider ones are no less sharp (docs/experiments/capacity-and-encodings.md).
 constexpr double kSamplesPerPixel = 20.0;
 constexpr double kStep = 0.8;
+// Training has at least this share of a plan with wider photos: before there is a scene, the times of the stages after it are guesses, and where they
+// turn out twice as long, detail of maps and surface would be given up for the width.
+constexpr double kTrainingShareOfWider = 0.7;
 constexpr double kMemoryShare = 0.5;
 constexpr double kBytesPerPixel = 3.0;
 
@@ -45,7 +48,8 @@ Plan PlanWithPayingWidth(const Predictor& predictor, Settings settings, const Ro
     if (width == kLeastAutoWidth) break;
     settings.run.image_width = width;
     Plan plan = plan_at(settings);
-    const bool no_less = plan.feasible && std::all_of(plan.reductions.begin(), plan.reductions.end(), is_given_up);
+    const bool no_less = plan.feasible && plan.training_s >= kTrainingShareOfWider * plan.Seconds() &&
+                         std::all_of(plan.reductions.begin(), plan.reductions.end(), is_given_up);
     if (no_less && PayingWidth(size, settings, plan.training_s * samples_per_s, room) >= width) return plan;
   }
   return least;

@@ -23,7 +23,7 @@ std::vector<int> WidthsToChooseFrom(int photo_width);
 int PayingWidth(const WorkSize& size, Settings settings, double samples, const Room& room);
 
 // For a total time. plan_at: the plan with these settings. Where the settings' width is kAutoWidth, plans with the widest photos that their training
-// time pays for and for which nothing is given up that would be made with kLeastAutoWidth.
+// time pays for, whose other stages leave most of the time to training, and for which nothing is given up that would be made with kLeastAutoWidth.
 Plan PlanWithPayingWidth(const Predictor& predictor, Settings settings, const Room& room, const std::function<Plan(const Settings&)>& plan_at);
 
 }  // namespace skyquilt::coordinator

@@ -7,7 +7,7 @@ namespace skyquilt::coordinator {
 namespace {
 
 // Training samples for each pixel of the training photos from which wider ones are no less sharp (docs/experiments/capacity-and-encodings.md).
-constexpr double kSamplesPerPixel = 20.0;
+constexpr double kSamplesPerPixel = 60.0;
 constexpr double kStep = 0.8;
 // Training has at least this share of a plan with wider photos: before there is a scene, the times of the stages after it are guesses, and where they
 // turn out twice as long, detail of maps and surface would be given up for the width.

@@ -34,8 +34,8 @@ void ChooseTrainingWidth(Pipeline& pipeline) {
   const double steps = ExpectedBlockSteps(settings, pipeline.comm.size(), pipeline.comm.local_size());
   const int width = PayingWidth(size, settings, steps * settings.train.batch_samples, RoomFor(pipeline.project.folder, settings));
   if (size.photo_width > kLeastAutoWidth) {
-    base::LogInfo("photos are trained at a width of {} of {} pixels, as {} (run.image_width)", width, size.photo_width,
-                  settings.run.time_budget_s > 0.0 ? "the time budget allows" : "without a time budget");
+    base::LogInfo("photos are trained at a width of {} of {} pixels: {} (run.image_width = auto)", width, size.photo_width,
+                  settings.run.time_budget_s > 0.0 ? "as wide as the time budget is enough for" : "wider only where a time for training is given");
   }
   for (Settings* each : {&settings, pipeline.level_settings ? &*pipeline.level_settings : nullptr}) {
     if (each != nullptr && each->run.image_width == kAutoWidth) each->run.image_width = width;

@@ -6,7 +6,8 @@
 namespace skyquilt::coordinator {
 namespace {
 
-// Training samples for each pixel of the training photos from which wider ones are no less sharp (docs/experiments/capacity-and-encodings.md).
+// Training samples for each pixel of the training photos that wider photos must get. With 20 the same total gave less than smaller photos; more than
+// 60 only long trainings have. Between them nothing was measured (docs/experiments/capacity-and-encodings.md).
 constexpr double kSamplesPerPixel = 60.0;
 constexpr double kStep = 0.8;
 // Training has at least this share of a plan with wider photos: before there is a scene, the times of the stages after it are guesses, and where they
@@ -14,6 +15,13 @@ constexpr double kStep = 0.8;
 constexpr double kTrainingShareOfWider = 0.7;
 constexpr double kMemoryShare = 0.5;
 constexpr double kBytesPerPixel = 3.0;
+
+// Whether the settings' width does.
+bool Pays(const WorkSize& size, const Settings& settings, double samples, const Room& room) {
+  const double pixels = size.PixelsAt(settings.run.image_width);
+  const bool enough = std::isfinite(samples) && samples >= kSamplesPerPixel * pixels * size.TrainingPhotos();
+  return enough && kBytesPerPixel * pixels * size.photos <= kMemoryShare * room.memory_limit && NeedsOf(size, settings).disk <= room.disk;
+}
 
 }  // namespace
 
@@ -27,10 +35,7 @@ std::vector<int> WidthsToChooseFrom(int photo_width) {
 int PayingWidth(const WorkSize& size, Settings settings, double samples, const Room& room) {
   for (const int width : WidthsToChooseFrom(size.photo_width)) {
     settings.run.image_width = width;
-    const double pixels = size.PixelsAt(width);
-    const bool enough = std::isfinite(samples) && samples >= kSamplesPerPixel * pixels * size.TrainingPhotos();
-    const bool fits = kBytesPerPixel * pixels * size.photos <= kMemoryShare * room.memory_limit && NeedsOf(size, settings).disk <= room.disk;
-    if (width == kLeastAutoWidth || (enough && fits)) return width;
+    if (Pays(size, settings, samples, room)) return width;
   }
   return kLeastAutoWidth;
 }
@@ -50,7 +55,7 @@ Plan PlanWithPayingWidth(const Predictor& predictor, Settings settings, const Ro
     Plan plan = plan_at(settings);
     const bool no_less = plan.feasible && plan.training_s >= kTrainingShareOfWider * plan.Seconds() &&
                          std::all_of(plan.reductions.begin(), plan.reductions.end(), is_given_up);
-    if (no_less && PayingWidth(size, settings, plan.training_s * samples_per_s, room) >= width) return plan;
+    if (no_less && Pays(size, settings, plan.training_s * samples_per_s, room)) return plan;
   }
   return least;
 }

@@ -147,6 +147,9 @@ void TimedRun::Start(Pipeline& pipeline, const std::filesystem::path& photos, co
   for (const StageRecord& record : ledger_.Stages()) {
     if (record.done) predictor_.Correct(record.stage, record.predicted_s, record.took_s);
   }
+  if (!trains) {
+    if (const std::optional<scene::TrainReport> training = scene::TryReadTrainReport(pipeline.project.TrainReport())) TakeTrainingSpeed(*training);
+  }
   std::vector<std::string> open = StagesOfRun();
   std::erase_if(open, [&](const std::string& name) { return IsDone(pipeline, name); });
   if (open.empty()) return;

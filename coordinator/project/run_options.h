@@ -11,7 +11,7 @@ namespace skyquilt::coordinator {
 constexpr int kAutoWidth = -1, kLeastAutoWidth = 1000;
 
 struct RunOptions {
-  int image_width = kAutoWidth;   // pixels; photos are scaled down to this width for training and scoring; 0: full size
+  int image_width = 1000;         // pixels; photos are scaled down to this width for training and scoring; 0: full size
   double time_budget_s = 0.0;     // seconds for the whole training; 0: the steps of [context] and [train] decide
   double within_s = 0.0;          // seconds for all of 'skyquilt run'; 0: the stages take as long as they take
   double context_share = 0.15;    // fraction of the time budget, 0..1

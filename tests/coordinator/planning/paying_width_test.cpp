@@ -31,7 +31,13 @@ Plan PlanOf(const WorkSize& size, const Settings& settings, double within_s, dou
   return MakePlan(request);
 }
 
-Plan PlanWithin(const WorkSize& size, double within_s, double seconds_per_pixel = 0.0, const Settings& settings = {}) {
+Settings AutoSettings() {
+  Settings settings;
+  settings.run.image_width = kAutoWidth;
+  return settings;
+}
+
+Plan PlanWithin(const WorkSize& size, double within_s, double seconds_per_pixel = 0.0, const Settings& settings = AutoSettings()) {
   const Predictor predictor(size, {.samples = kSamplesPerSecond});
   return PlanWithPayingWidth(predictor, settings, kMuchRoom, [&](const Settings& s) { return PlanOf(size, s, within_s, seconds_per_pixel); });
 }

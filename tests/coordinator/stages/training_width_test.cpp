@@ -25,6 +25,7 @@ class TrainingWidth : public ProjectFixture {
   Pipeline Begin(double time_budget_s = 0.0) const {
     Pipeline pipeline{.comm = *comm_, .project = project_, .settings = {}};
     pipeline.settings.run.time_budget_s = time_budget_s;
+    pipeline.settings.run.image_width = kAutoWidth;
     return pipeline;
   }
   int Chosen(double time_budget_s) const {

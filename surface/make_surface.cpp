@@ -16,6 +16,7 @@
 #include "surface/fuse_mesh.h"
 #include "surface/maps/surface_maps.h"
 #include "surface/mesh/simplify.h"
+#include "surface/refine/refine_views.h"
 #include "surface/surface_table.h"
 #include "surface/views/render_depth_views.h"
 
@@ -24,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kWorkVersion = "4";  // of the files in the work folder
+constexpr const char* kWorkVersion = "5";  // of the files in the work folder
 
 fs::path TextureFolder(const fs::path& work_folder) {
   return work_folder / "textures";
@@ -97,7 +98,7 @@ class SurfaceBuilder {
     fs::remove(input_.out_folder / "surface.json");  // an older one must not vouch for an unfinished surface
     {
       const double voxel_m = input_.options.voxel_gsd * input_.info->gsd_m;
-      const DepthViews views = RenderDepthViews(input_, voxel_m, threads_);
+      const DepthViews views = RenderDepthViews(input_, voxel_m, threads_, Refinement());
       for (size_t i = 0; i < views.size(); ++i) ++(views.pose(i).photo >= 0 ? result_.photos : result_.virtual_views);
       FusedMesh fused = FuseMesh(input_, views, voxel_m, threads_);
       result_.voxel_m = fused.voxel_m;
@@ -124,6 +125,13 @@ class SurfaceBuilder {
   }
 
  private:
+  ImprovePhotoViews Refinement() const {
+    if (!input_.options.refine || input_.photos == nullptr) return {};
+    return [this](std::span<const ViewPose> poses, const std::string& key, const fs::path& folder, std::vector<fs::path>* files) {
+      RefineViews(input_, poses, key, folder, files, threads_);
+    };
+  }
+
   // Scores need those of level 0 only.
   void RemoveCoarseTextures() const {
     const fs::path folder = TextureFolder(input_.work_folder);

@@ -28,7 +28,8 @@ struct SurfaceInput {
   const scene::SceneInfo* info = nullptr;
   const survey::Survey* survey = nullptr;
   RayCaster caster;                                   // of the scene, at the brightness that the texture shall have
-  const image::PixelCache* photos = nullptr;          // for fine detail of the texture; null: none. Entry i belongs to survey->photos[i]
+  RayCaster depth_caster;                             // the same where only depths are asked for, up to options.min_opacity; none: caster
+  const image::PixelCache* photos = nullptr;          // to refine depths, and for fine detail of the texture; entry i belongs to survey->photos[i]
   std::optional<gis::Boundary> boundary;              // in coordinates of the maps; none: the whole scene
   geo::Vertical vertical = geo::Vertical::kAsTagged;  // of all files but the 3D tiles
   double map_resolution_m = 0.0;                      // cells of the maps

@@ -13,6 +13,7 @@ std::vector<config::Field<SurfaceOptions>> SurfaceOptions::Fields() {
       {"enabled", &O::enabled, Range(), "make mesh, point cloud, tiles and maps in 'skyquilt run'; 'skyquilt surface' makes them in any case"},
       {"voxel_gsd", &O::voxel_gsd, Range{0.25, 100}, "cells in which depths are fused, in ground sampling distances of the finest block"},
       {"view_gsd", &O::view_gsd, Range{0.25, 100}, "pixels of the pictures of depth, in ground sampling distances"},
+      {"refine", &O::refine, Range(), "improve the depths of photos by comparing the photos with each other"},
       {"virtual_views", &O::virtual_views, Range(), "also look at the scene from above and obliquely where photos leave gaps"},
       {"min_opacity", &O::min_opacity, Range{0.85, 0.999}, "depths of pixels with a lower opacity are not used"},
       {"max_spread_voxels", &O::max_spread_voxels, Range{0.1, 1e6},

@@ -19,6 +19,7 @@ struct SurfaceOptions {
   bool enabled = true;              // made by 'skyquilt run'
   double voxel_gsd = 1.5;           // cells in which depths are fused, in ground sampling distances of the finest block
   double view_gsd = 2.0;            // pixels of the pictures of depth, in ground sampling distances
+  bool refine = true;               // depths of photos are improved by comparing the photos
   bool virtual_views = true;        // also look from above and obliquely where photos leave gaps
   double min_opacity = 0.85;        // depths of pixels with a lower opacity are not used; at least 0.85, where a ray reaches the back of a surface
   double max_spread_voxels = 20.0;  // nor where the surface is blurred by more than this along the ray; where photos look level, across the surface

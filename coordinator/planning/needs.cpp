@@ -17,6 +17,7 @@ constexpr double kProgramMemory = 256e6;
 // Bytes on disk.
 constexpr double kFeatureBytes = 152.0;  // of a feature in COLMAP's database: descriptor and place
 constexpr double kMatchBytes = 20e3;     // of a pair of photos
+constexpr double kViewBytes = 6.0;       // of a pixel of a picture of depth, which stands beside its successor
 constexpr double kMeshBytes = 150.0;     // of a cell of the surface, in all its files and the work folder
 constexpr double kTexelBytes = 2.0;      // of a texel, in all files
 constexpr double kMapBytes = 5.0;        // of a map cell, compressed: colours, heights, sources
@@ -54,8 +55,8 @@ Needs NeedsOf(const WorkSize& size, const Settings& settings) {
   if (!size.level) needs.disk += kMapBytes * (surface + std::min(size.surface_pixels, settings.products.MostAutomaticCells()));
   if (settings.surface.enabled) {
     const surface::SurfaceOptions& options = settings.surface;
-    const double views = pixels * size.TrainingPhotos() / std::max(1.0, options.view_gsd * options.view_gsd) * (options.virtual_views ? 2.0 : 1.0);
-    needs.disk += 2.0 * 5.0 * views + kMeshBytes * surface / (options.voxel_gsd * options.voxel_gsd) +
+    const double views = pixels * size.TrainingPhotos() / std::max(1.0, options.view_gsd * options.view_gsd) * (options.virtual_views ? 1.25 : 1.0);
+    needs.disk += 2.0 * kViewBytes * views + kMeshBytes * surface / (options.voxel_gsd * options.voxel_gsd) +
                   kTexelBytes * surface / (options.texel_gsd * options.texel_gsd);
   }
   needs.disk += kReportBytes * std::min(size.held_out, settings.evaluate.report_photos);

@@ -20,6 +20,9 @@ class ReductionList {
     if (settings_.surface.enabled && settings_.surface.virtual_views) {
       Add("gap views", "surface", "no virtual views of what photos leave out (surface.virtual_views)", {{"surface.virtual_views", "false"}});
     }
+    if (settings_.surface.enabled && settings_.surface.refine) {
+      Add("depths by photos", "surface", "depths are not improved by comparing photos (surface.refine)", {{"surface.refine", "false"}});
+    }
     AddMaps(FineCells());
     AddSurfaceDetail(2.5, 3.0, 2.0);
     if (settings_.tour.auto_stops > 0) Add("tour", "tour", "no tour (tour.auto)", {{"tour.auto", "0"}});

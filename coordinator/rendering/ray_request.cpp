@@ -124,6 +124,7 @@ std::string ToBytes(const RayRequest& request) {
   packer.Add(request.id);
   packer.Add(request.options.step_scale);
   packer.Add(request.options.colour_threshold);
+  packer.Add(request.options.end_transmittance);
   packer.Add(request.options.concealing);
   packer.Add(request.options.normals);
   const auto& rays = request.rays;
@@ -150,6 +151,7 @@ RayRequest RayRequestFromBytes(const std::string& bytes) {
   request.id = unpacker.Take<uint64_t>();
   request.options.step_scale = unpacker.Take<double>();
   request.options.colour_threshold = unpacker.Take<float>();
+  request.options.end_transmittance = unpacker.Take<double>();
   request.options.concealing = unpacker.Take<render::Concealing>();
   request.options.normals = unpacker.Take<bool>();
   const bool shared = unpacker.Take<bool>();

@@ -30,6 +30,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.info = &scene.info();
   input.survey = &survey;
   input.caster = products::CasterOf(scene, products::AppearanceOf(settings.products.exposure, scene.info()), session.threads());
+  input.depth_caster = products::CasterOf(scene, {.depths_to_opacity = settings.surface.min_opacity}, session.threads());
   input.boundary = products::BoundaryOf(grid, OptionsOfProducts(pipeline));
   input.vertical = geo::VerticalNamed(settings.products.vertical);
   input.map_resolution_m = grid.resolution_m;
@@ -40,7 +41,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.work_folder = project.SurfaceWorkFolder();
   input.out_folder = project.SurfaceFolder();
   std::optional<image::PixelCache> photos;
-  if (settings.surface.photo_detail > 0.0) {
+  if (settings.surface.refine || settings.surface.photo_detail > 0.0) {
     std::filesystem::create_directories(project.PixelCacheFile().parent_path());
     photos = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, session.threads());
     input.photos = &*photos;

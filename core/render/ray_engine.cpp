@@ -22,9 +22,8 @@ namespace {
 constexpr int64_t kMaxGroupRays = 1024, kMinGroupRays = 128, kTasks = 32;
 // Samples of a ray that are evaluated together. Opaque rays take no part in later rounds, which saves the samples behind surfaces.
 constexpr size_t kRoundSamples = 8;
-constexpr float kMaxLogTau = 30.0F;  // exp of it times any length is finite
-// A ray ends below this transmittance, and its colour is scaled to full opacity. About one step of an 8-bit colour; Mueller et al. 2022 stop at 0.01.
-constexpr double kDarkTransmittance = 5e-3;
+constexpr float kMaxLogTau = 30.0F;               // exp of it times any length is finite
+constexpr double kPassed[3] = {0.85, 0.5, 0.15};  // transmittances at the front, in the middle and at the back of a surface
 
 // Samples of a ray: first, next to be evaluated, one past the last.
 struct Progress {
@@ -181,7 +180,6 @@ class RayRenderer::Group {
 
   // Composites the samples of the round in order of distance; false when the ray is finished.
   bool ComposeRound(Progress& p, RayState& state) {
-    constexpr double kPassed[3] = {0.85, 0.5, 0.15};
     float* const passed_at[3] = {&state.depth_front, &state.depth_median, &state.depth_back};
     const size_t end = std::min(p.end, p.next + kRoundSamples);
     for (; p.next < end; ++p.next) {
@@ -204,7 +202,7 @@ class RayRenderer::Group {
         for (size_t row = 0; row < field::kGeometryRows; ++row) batch.visible_geometry.push_back(batch.geometry[row * batch.stride + local]);
       }
       state.transmittance = after;
-      if (after < kDarkTransmittance) {
+      if (after < options_.end_transmittance) {
         p.end = ++p.next;
         state.ended = true;
         break;
@@ -367,6 +365,13 @@ class RayRenderer::Group {
   std::vector<Progress> progress_;
   std::vector<size_t> alive_;
 };
+
+EngineOptions EngineOptions::DepthsOnly(double opacity) {
+  EngineOptions options;
+  options.colour_threshold = 2.0F;
+  options.end_transmittance = std::min(1.0 - opacity, kPassed[2]);
+  return options;
+}
 
 RayRenderer::RayRenderer(const FieldSet& fields, const EngineOptions& options) : group_(std::make_unique<Group>(fields, options)) {}
 

@@ -26,11 +26,14 @@ struct FieldSet {
 struct EngineOptions {
   // Options for the concealed rendering; the defaults when luminance is off.
   static EngineOptions For(const brightness::Luminance& luminance);
+  // No colours; a ray ends where its opacity is above both `opacity` and 0.85, at which the last of its depths is known.
+  static EngineOptions DepthsOnly(double opacity);
 
   bool operator==(const EngineOptions&) const = default;
 
   double step_scale = 1.0;                    // marching step as a multiple of the field's own step
   float colour_threshold = 1e-4F;             // samples with a smaller compositing weight get no colour
+  double end_transmittance = 5e-3;            // a ray ends below it, scaled to full opacity; about one step of an 8-bit colour
   bool normals = false;                       // also fill the normals of RayColor, from the samples that get a colour
   Concealing concealing = Concealing::kNone;  // not kNone: fill RayColor::concealed_light (fields with luminance only)
 };

@@ -56,10 +56,14 @@ struct Scene::Impl {
                                       : info.luminance.mode == brightness::LuminanceMode::kUnder;
   }
   render::EngineOptions Options(const Appearance& appearance) const {
-    render::EngineOptions options = Conceals(appearance.look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{};
+    render::EngineOptions options = OfLook(appearance);
     options.step_scale = kStepScale;
     options.normals = appearance.normals;
     return options;
+  }
+  render::EngineOptions OfLook(const Appearance& appearance) const {
+    if (appearance.depths_to_opacity > 0.0) return render::EngineOptions::DepthsOnly(appearance.depths_to_opacity);
+    return Conceals(appearance.look) ? render::EngineOptions::For(info.luminance) : render::EngineOptions{};
   }
   // Factor from the light of the background, which has the photos' brightness, to that of a look.
   float BackgroundGain(Rendition look) const {
@@ -83,7 +87,7 @@ struct Scene::Impl {
       statistics.rays += static_cast<int64_t>(rays.size());
       for (size_t i = 0; i < rays.size(); ++i) out[i] = render::FinalColor(in_flight[i].state);
     }
-    if (Conceals(appearance.look)) ShowConcealed(out);
+    if (appearance.depths_to_opacity <= 0.0 && Conceals(appearance.look)) ShowConcealed(out);
     scale_check.Check(rays, out);
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

@@ -100,7 +100,8 @@ void AddToNode(const ViewCamera& view, float u, float v, float distance2, const 
   // Behind the surface it is less and less certain what follows: without a falling weight, rays that graze a roof or a ball would thicken its other
   // side (Bylow et al. 2013; Oleynikova et al. 2017).
   const float certainty = std::min((signed_distance + truncation) * weighting.behind, 1.0F) * (lookup.sure ? 1.0F : kUnsureWeight);
-  const float weight = cosine * weighting.area / distance2 * certainty;
+  const float share = view.weight != nullptr ? static_cast<float>(view.weight[pixel]) * (1.0F / kFullWeight) : 1.0F;
+  const float weight = cosine * weighting.area / distance2 * certainty * share;
   if (!(weight > 0.0F)) return;
   sums.psi[node] += weight * std::min(signed_distance / truncation, 1.0F);
   sums.weight[node] += weight;

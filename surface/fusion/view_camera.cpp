@@ -16,7 +16,8 @@ bool IsUsablePose(const ViewPose& pose) {
 ViewCamera CameraOf(const DepthView& view) {
   const ViewPose& pose = view.pose;
   const size_t n_pixels = static_cast<size_t>(pose.width) * static_cast<size_t>(pose.height);
-  SKYQUILT_CHECK(view.depth_m.size() == n_pixels && view.cosine.size() == n_pixels, "a picture of depth does not have the size of its pose");
+  SKYQUILT_CHECK(view.depth_m.size() == n_pixels && view.cosine.size() == n_pixels && (view.weight.empty() || view.weight.size() == n_pixels),
+                 "a picture of depth does not have the size of its pose");
   ViewCamera camera;
   camera.rotation = pose.cam_from_enu.rotation.toRotationMatrix();
   camera.centre = pose.Centre();
@@ -28,6 +29,7 @@ ViewCamera CameraOf(const DepthView& view) {
   camera.photo = pose.photo >= 0;
   camera.depth_m = view.depth_m.data();
   camera.cosine = view.cosine.data();
+  if (!view.weight.empty()) camera.weight = view.weight.data();
   camera.side[0] = Eigen::Vector3d(pose.focal_px, 0.0, pose.cx).normalized();
   camera.side[1] = Eigen::Vector3d(-pose.focal_px, 0.0, pose.width - pose.cx).normalized();
   camera.side[2] = Eigen::Vector3d(0.0, pose.focal_px, pose.cy).normalized();

@@ -19,6 +19,7 @@ struct ViewCamera {
   bool photo = false;  // not a virtual view
   const float* depth_m = nullptr;
   const uint8_t* cosine = nullptr;
+  const uint8_t* weight = nullptr;      // null: all full
   std::array<Eigen::Vector3d, 4> side;  // planes through the centre that bound the image: normals of length 1, camera frame, inwards
 };
 

@@ -25,8 +25,9 @@ struct RenderedView {
   ViewPose pose;
   std::vector<float> depth_m;
   std::vector<uint8_t> cosine;
+  std::vector<uint8_t> weight;
   std::vector<float> spread_m;  // between front and back of the surface along the ray; empty but between rendering and FilterDepths
-  DepthView Get() const { return {pose, depth_m, cosine}; }
+  DepthView Get() const { return {pose, depth_m, cosine, weight}; }
 };
 
 // The median depth of a rendered ray; NaN when it is transparent, blurred, unknown or outside the box. With spread_across only what is blurred too

@@ -46,7 +46,8 @@ DepthView DepthViews::operator[](size_t view) const {
   const size_t n_pixels = PixelsOf(poses_[view]);
   // The map begins at a page and all offsets are multiples of 8.
   const uint8_t* picture = map_.bytes().data() + offset_[view];
-  return {poses_[view], {reinterpret_cast<const float*>(picture), n_pixels}, {picture + n_pixels * sizeof(float), n_pixels}};
+  const uint8_t* cosine = picture + n_pixels * sizeof(float);
+  return {poses_[view], {reinterpret_cast<const float*>(picture), n_pixels}, {cosine, n_pixels}, {cosine + n_pixels, n_pixels}};
 }
 
 std::vector<DepthView> DepthViews::All() const {

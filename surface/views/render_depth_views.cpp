@@ -22,7 +22,10 @@ namespace skyquilt::surface {
 namespace {
 
 constexpr double kCoarseBytes = 64e6;  // of the pictures that are kept for the search for gaps
-constexpr double kVirtualShare = 1.0;  // rays of virtual views, in rays of photo views
+// Rays of virtual views, in rays of photo views. From above more of them hardly close another hole, but blur what photos show.
+constexpr double kVirtualShare = 0.25, kLevelVirtualShare = 1.0;
+// Of virtual views beside improved ones: where photos agree on the surface, they must not blur it.
+constexpr uint8_t kVirtualWeight = 16;
 
 int64_t RaysOf(std::span<const ViewPose> poses) {
   int64_t rays = 0;
@@ -54,6 +57,7 @@ std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double v
   for (const ViewPose& pose : places.training) add_pose(pose);
   if (const double free_opacity = LimitsOf(input, voxel_m).max_free_opacity; free_opacity >= 0.0) add(free_opacity);
   if (LimitsOf(input, voxel_m).spread_across) add(true);
+  if (options.refine) add(options.refine);
   return base::HashHex(text);
 }
 
@@ -71,41 +75,49 @@ std::optional<DepthViews> OpenFinished(const std::filesystem::path& file, const 
   return std::nullopt;
 }
 
+RenderedView LoadFinished(const std::filesystem::path& file, const ViewPose& pose, const std::string& key) {
+  std::optional<RenderedView> view = LoadView(file, pose, key);
+  if (!view) throw base::InputError(file, "is missing or damaged", "Run the command again; it makes this view again");
+  return std::move(*view);
+}
+
 // Renders lists of views, or loads those that an earlier run has finished.
 class DepthViewRenderer {
  public:
   DepthViewRenderer(const SurfaceInput& input, double voxel_m, std::string key, std::filesystem::path folder, base::ThreadPool& threads)
       : input_(input), limits_(LimitsOf(input, voxel_m)), key_(std::move(key)), folder_(std::move(folder)), threads_(threads) {}
 
-  // `coarse`: takes them; may be null.
-  void Make(std::span<const ViewPose> poses, const std::string& label, CoarseDepths* coarse) {
+  void Make(std::span<const ViewPose> poses, const std::string& label) {
     if (poses.empty()) return;
     base::Progress progress(label, static_cast<double>(RaysOf(poses)), "rays");
     for (size_t i = 0; i < poses.size(); ++i) {
-      const RenderedView view = MakeOne(poses[i], folder_ / ViewFileName(poses_.size()), progress);
-      if (coarse != nullptr) coarse->Add(view.Get());
-      poses_.push_back(view.pose);
+      MakeOne(poses[i], ViewFileName(poses_.size()), progress);
+      poses_.push_back(poses[i]);
       progress.Advance(0.0, std::to_string(i + 1) + " of " + std::to_string(poses.size()) + " views");
     }
     progress.Finish();
   }
 
+  // Of all depths that are rendered from now on.
+  void SetWeight(uint8_t weight) { weight_ = weight; }
   const std::vector<ViewPose>& poses() const { return poses_; }
   int64_t rendered_rays() const { return rendered_rays_; }
   double seconds() const { return seconds_; }
 
  private:
-  RenderedView MakeOne(const ViewPose& pose, const std::filesystem::path& file, base::Progress& progress) {
-    if (std::optional<RenderedView> finished = LoadView(file, pose, key_)) {
+  void MakeOne(const ViewPose& pose, const std::string& name, base::Progress& progress) {
+    // Those that were improved stand in the place of rendered ones.
+    if (LoadView(folder_ / kImprovedFolder / name, pose, key_) || LoadView(folder_ / name, pose, key_)) {
       progress.Advance(static_cast<double>(RaysOf({&pose, 1})));
-      return std::move(*finished);
+      return;
     }
     const auto start = std::chrono::steady_clock::now();
-    RenderedView view = RenderView(pose, input_.caster, limits_, threads_, [&](int64_t pixels) { progress.Advance(static_cast<double>(pixels)); });
+    RenderedView view = RenderView(pose, input_.depth_caster ? input_.depth_caster : input_.caster, limits_, threads_,
+                                   [&](int64_t pixels) { progress.Advance(static_cast<double>(pixels)); });
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     rendered_rays_ += RaysOf({&pose, 1});
-    SaveView(view, key_, file);
-    return view;
+    if (weight_ != kFullWeight) view.weight.assign(view.depth_m.size(), weight_);
+    SaveView(view, key_, folder_ / name);
   }
 
   const SurfaceInput& input_;
@@ -114,6 +126,7 @@ class DepthViewRenderer {
   std::filesystem::path folder_;
   base::ThreadPool& threads_;
   std::vector<ViewPose> poses_;
+  uint8_t weight_ = kFullWeight;
   int64_t rendered_rays_ = 0;
   double seconds_ = 0.0;
 };
@@ -129,7 +142,7 @@ void Report(const DepthViewRenderer& renderer, size_t photos) {
 
 }  // namespace
 
-DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::ThreadPool& threads) {
+DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::ThreadPool& threads, const ImprovePhotoViews& improve) {
   const PhotoPlaces places = PlacesOfPhotos(input);
   const bool level = survey::LooksLevel(*input.survey);
   const std::string key = KeyOf(input, places, voxel_m);
@@ -143,14 +156,20 @@ DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::Thr
 
   base::RequireWritableFolder(folder);
   DepthViewRenderer renderer(input, voxel_m, key, folder, threads);
-  CoarseDepths coarse(RaysOf(places.training), kCoarseBytes);
-  renderer.Make(places.training, "surface views", input.options.virtual_views ? &coarse : nullptr);
+  renderer.Make(places.training, "surface views");
+  std::vector<std::filesystem::path> files;  // of all views
+  for (size_t i = 0; i < renderer.poses().size(); ++i) files.push_back(folder / ViewFileName(i));
+  if (improve) improve(renderer.poses(), key, folder, &files);
   if (input.options.virtual_views) {
-    const auto budget = static_cast<int64_t>(kVirtualShare * static_cast<double>(RaysOf(places.training)));
+    CoarseDepths coarse(RaysOf(places.training), kCoarseBytes);
+    for (size_t i = 0; i < files.size(); ++i) coarse.Add(LoadFinished(files[i], renderer.poses()[i], key).Get());
+    const auto budget = static_cast<int64_t>((level ? kLevelVirtualShare : kVirtualShare) * static_cast<double>(RaysOf(places.training)));
     const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget, level};
-    renderer.Make(PlanGapViews(coarse, gaps, threads), "surface views of gaps", nullptr);
+    renderer.SetWeight(improve ? kVirtualWeight : kFullWeight);
+    renderer.Make(PlanGapViews(coarse, gaps, threads), "surface views of gaps");
+    for (size_t i = files.size(); i < renderer.poses().size(); ++i) files.push_back(folder / ViewFileName(i));
   }
-  JoinViews(renderer.poses(), key, folder, joined);
+  JoinViews(renderer.poses(), key, files, joined);
   std::filesystem::remove_all(folder, ignored);
   Report(renderer, places.training.size());
   return DepthViews::Open(joined);

@@ -16,7 +16,7 @@
 namespace skyquilt::surface {
 namespace {
 
-constexpr std::string_view kViewMagic = "SQVIEW01";
+constexpr std::string_view kViewMagic = "SQVIEW02";
 constexpr size_t kHashChars = 16;
 
 template <typename T>
@@ -55,6 +55,7 @@ std::string ViewFileName(size_t view) {
 void SaveView(const RenderedView& view, const std::string& key, const std::filesystem::path& file) {
   std::string content = Preamble(view.pose, key);
   content.append(BytesOf(view.depth_m)).append(BytesOf(view.cosine));
+  view.weight.empty() ? content.append(view.cosine.size(), static_cast<char>(kFullWeight)) : content.append(BytesOf(view.weight));
   content.append(base::HashHex(content));
   base::WriteFileAtomically(file, content);
 }
@@ -62,7 +63,7 @@ void SaveView(const RenderedView& view, const std::string& key, const std::files
 std::optional<RenderedView> LoadView(const std::filesystem::path& file, const ViewPose& pose, const std::string& key) {
   const std::string preamble = Preamble(pose, key);
   const size_t n_pixels = PixelsOf(pose), depth_bytes = n_pixels * sizeof(float);
-  const size_t content_bytes = preamble.size() + depth_bytes + n_pixels;
+  const size_t content_bytes = preamble.size() + n_pixels * kViewPixelBytes;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored) || std::filesystem::file_size(file, ignored) != content_bytes + kHashChars)
     return std::nullopt;
@@ -74,14 +75,17 @@ std::optional<RenderedView> LoadView(const std::filesystem::path& file, const Vi
   view.pose = pose;
   view.depth_m.resize(n_pixels);
   view.cosine.resize(n_pixels);
+  view.weight.resize(n_pixels);
   if (n_pixels > 0) {
     std::memcpy(view.depth_m.data(), text.data() + preamble.size(), depth_bytes);
     std::memcpy(view.cosine.data(), text.data() + preamble.size() + depth_bytes, n_pixels);
+    std::memcpy(view.weight.data(), text.data() + preamble.size() + depth_bytes + n_pixels, n_pixels);
   }
   return view;
 }
 
-void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const std::filesystem::path& folder, const std::filesystem::path& file) {
+void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const std::vector<std::filesystem::path>& parts,
+               const std::filesystem::path& file) {
   std::vector<ViewRecord> records;
   records.reserve(poses.size());
   for (const ViewPose& pose : poses) records.push_back(RecordOf(pose));
@@ -96,11 +100,10 @@ void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const
   joined.Append(BytesOf(records));
   for (size_t i = 0; i < poses.size(); ++i) {
     base::ThrowIfCancelled();
-    const std::filesystem::path part = folder / ViewFileName(i);
-    const std::optional<RenderedView> view = LoadView(part, poses[i], key);
-    if (!view) throw base::InputError(part, "is missing or damaged", "Run the command again; it renders this view again");
+    const std::optional<RenderedView> view = LoadView(parts[i], poses[i], key);
+    if (!view) throw base::InputError(parts[i], "is missing or damaged", "Run the command again; it renders this view again");
     std::string picture(BytesOf(view->depth_m));
-    picture += BytesOf(view->cosine);
+    picture.append(BytesOf(view->cosine)).append(BytesOf(view->weight));
     picture.resize(PictureBytes(poses[i]), '\0');
     joined.Append(picture);
     joined.Append(base::HashHex(picture));

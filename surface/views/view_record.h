@@ -48,10 +48,10 @@ inline std::optional<ViewPose> PoseOf(const ViewRecord& record) {
   return pose;
 }
 
-// views.bin: this header, the records of all views, and the pictures: depths (float), then cosines (bytes), padded with zeros to 8 bytes, then
-// base::HashHex of all these bytes.
+// views.bin: this header, the records of all views, and the pictures: depths (float), then cosines and weights (bytes), padded with zeros to 8 bytes,
+// then base::HashHex of all these bytes.
 struct ViewsHeader {
-  std::array<char, 8> magic = {'S', 'Q', 'V', 'I', 'E', 'W', 'S', '2'};
+  std::array<char, 8> magic = {'S', 'Q', 'V', 'I', 'E', 'W', 'S', '3'};
   std::array<char, 16> key = {};       // of what they were rendered from
   std::array<char, 16> checksum = {};  // base::HashHex of the records
   uint64_t views = 0;
@@ -61,9 +61,10 @@ static_assert(sizeof(ViewsHeader) == 48 && std::is_trivially_copyable_v<ViewsHea
 inline size_t PixelsOf(const ViewPose& pose) {
   return static_cast<size_t>(pose.width) * static_cast<size_t>(pose.height);
 }
+constexpr size_t kViewPixelBytes = sizeof(float) + 2;
 inline size_t PictureBytes(const ViewPose& pose) {
   constexpr size_t kAlign = 8;
-  return (PixelsOf(pose) * (sizeof(float) + 1) + kAlign - 1) / kAlign * kAlign;
+  return (PixelsOf(pose) * kViewPixelBytes + kAlign - 1) / kAlign * kAlign;
 }
 constexpr size_t kPictureHashBytes = 16;
 

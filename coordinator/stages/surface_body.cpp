@@ -1,9 +1,12 @@
 // The work of stage "surface".
+#include <optional>
+
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/stages/product_area.h"
 #include "coordinator/stages/stage_bodies.h"
 #include "core/base/amounts.h"
+#include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/image/pixel_cache.h"
 #include "core/scene/scene.h"
@@ -13,6 +16,22 @@
 #include "surface/make_surface.h"
 
 namespace skyquilt::coordinator {
+namespace {
+
+// Nothing when photos are gone or changed and the surface can do without them.
+std::optional<image::PixelCache> PhotosOf(const Pipeline& pipeline, const survey::Survey& survey, base::ThreadPool& threads) {
+  const std::filesystem::path file = pipeline.project.PixelCacheFile();
+  try {
+    std::filesystem::create_directories(file.parent_path());
+    return image::PixelCache::Open(file, PixelSources(survey), pipeline.settings.run.image_width, threads);
+  } catch (const base::InputError& error) {
+    if (pipeline.settings.surface.photo_detail > 0.0) throw;
+    base::LogWarning("the surface is made without photos, so walls and small things come out less exact: {}", error.what());
+    return std::nullopt;
+  }
+}
+
+}  // namespace
 
 std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   const Project& project = pipeline.project;
@@ -41,11 +60,8 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.work_folder = project.SurfaceWorkFolder();
   input.out_folder = project.SurfaceFolder();
   std::optional<image::PixelCache> photos;
-  if (settings.surface.refine || settings.surface.photo_detail > 0.0) {
-    std::filesystem::create_directories(project.PixelCacheFile().parent_path());
-    photos = image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), settings.run.image_width, session.threads());
-    input.photos = &*photos;
-  }
+  if (settings.surface.refine || settings.surface.photo_detail > 0.0) photos = PhotosOf(pipeline, survey, session.threads());
+  if (photos) input.photos = &*photos;
   const surface::SurfaceResult result = surface::MakeSurface(input, session.threads());
   pipeline.rendering_s += result.fusing_s;
   base::LogInfo("surface from {} photos and {} virtual views: {} triangles, {} points, {} file(s) in {}: {}", result.photos, result.virtual_views,

@@ -1,5 +1,6 @@
 #include "surface/fusion/integrate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -28,8 +29,8 @@ struct BrickSums {
   uint8_t* photos;
 };
 
-void CountUp(uint8_t* count) {
-  if (*count < std::numeric_limits<uint8_t>::max()) ++*count;
+void CountUp(uint8_t* count, int by) {
+  *count = static_cast<uint8_t>(std::min(*count + by, static_cast<int>(std::numeric_limits<uint8_t>::max())));
 }
 
 struct Lookup {
@@ -100,14 +101,16 @@ void AddToNode(const ViewCamera& view, float u, float v, float distance2, const 
   // Behind the surface it is less and less certain what follows: without a falling weight, rays that graze a roof or a ball would thicken its other
   // side (Bylow et al. 2013; Oleynikova et al. 2017).
   const float certainty = std::min((signed_distance + truncation) * weighting.behind, 1.0F) * (lookup.sure ? 1.0F : kUnsureWeight);
-  const float share = view.weight != nullptr ? static_cast<float>(view.weight[pixel]) * (1.0F / kFullWeight) : 1.0F;
+  const uint8_t counts = view.weight != nullptr ? view.weight[pixel] : kFullWeight;
+  const float share = static_cast<float>(std::min(counts, kFullWeight)) * (1.0F / kFullWeight);
   const float weight = cosine * weighting.area / distance2 * certainty * share;
   if (!(weight > 0.0F)) return;
   sums.psi[node] += weight * std::min(signed_distance / truncation, 1.0F);
   sums.weight[node] += weight;
   if (std::abs(signed_distance) <= 0.5F * truncation) {
-    CountUp(&sums.views[node]);
-    if (view.photo) CountUp(&sums.photos[node]);
+    const int seen = counts == kConfirmedWeight ? 2 : 1;
+    CountUp(&sums.views[node], seen);
+    if (view.photo) CountUp(&sums.photos[node], seen);
   }
 }
 

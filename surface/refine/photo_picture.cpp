@@ -10,7 +10,7 @@ namespace {
 class GreyPhoto {
  public:
   GreyPhoto(const image::PixelCache& photos, size_t photo)
-      : rgb_(photos.Rgb(photo)), mask_(photos.Mask(photo)), width_(photos.Width(photo)), height_(photos.Height(photo)) {}
+      : pixels_(photos.Copy(photo)), width_(photos.Width(photo)), height_(photos.Height(photo)) {}
 
   float At(double x, double y) const {
     if (!(x >= 0.0 && y >= 0.0 && x <= width_ && y <= height_)) return 0.0F;
@@ -25,12 +25,12 @@ class GreyPhoto {
  private:
   float Pixel(int x, int y) const {
     const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);
-    if (!mask_.empty() && mask_[i] == 0) return 0.0F;
-    const uint8_t* p = rgb_.data() + 3 * i;
+    if (!pixels_.mask.empty() && pixels_.mask[i] == 0) return 0.0F;
+    const uint8_t* p = pixels_.rgb.data() + 3 * i;
     return 0.299F * static_cast<float>(p[0]) + 0.587F * static_cast<float>(p[1]) + 0.114F * static_cast<float>(p[2]);
   }
 
-  std::span<const uint8_t> rgb_, mask_;
+  image::PixelCache::Photo pixels_;  // a copy: mapped pages of all photos together would take more memory than there is
   int width_, height_;
 };
 

@@ -27,12 +27,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kMatchedFolder = "matched";  // in that of the rendered views: what each photo finds by itself
-constexpr size_t kSources = 8;                     // photos that each is compared with
-constexpr float kLeastCorrelation = 0.4F;          // of a depth that is taken
-constexpr int kLeastAgreeing = 1;                  // other photos that must find the same place
-constexpr double kAgreement_px = 1.0;              // disparity by which they may differ
-constexpr uint8_t kRenderedWeight = 128;           // of depths that remain as rendered
+constexpr const char* kMatchedFolder = "matched";     // in that of the rendered views: what each photo finds by itself
+constexpr size_t kSources = 8;                        // photos that each is compared with
+constexpr float kLeastCorrelation = 0.4F;             // of a depth that is taken
+constexpr int kLeastAgreeing = 1;                     // other photos that must find the same place
+constexpr double kAgreement_px = 1.0;                 // disparity by which they may differ
+constexpr uint8_t kRenderedWeight = kFullWeight / 2;  // of depths that remain as rendered
 constexpr double kShareOfMemory = 0.1;
 
 // The results of `make` for the indices that were asked for last.
@@ -72,7 +72,7 @@ struct MatchedDepths {
     for (int y = 0; y < pose.height; ++y) {
       for (int x = 0; x < pose.width; ++x) {
         const size_t i = static_cast<size_t>(y) * static_cast<size_t>(pose.width) + static_cast<size_t>(x);
-        if (view.weight[i] == kFullWeight) inverse_depth[i] = static_cast<float>(LengthAt(pose, x, y) / static_cast<double>(view.depth_m[i]));
+        if (view.weight[i] == kConfirmedWeight) inverse_depth[i] = static_cast<float>(LengthAt(pose, x, y) / static_cast<double>(view.depth_m[i]));
       }
     }
   }
@@ -159,7 +159,7 @@ class Refiner {
     return pictures_.Get(i, [&](size_t index) { return PictureOf(poses_[index], *input_.survey, *input_.photos, threads_); });
   }
 
-  // Saves the view with matched depths in the place of rendered ones where photos agree well enough; their weight is full.
+  // Saves the view with matched depths in the place of rendered ones where photos agree well enough; their weight is kConfirmedWeight.
   void Match(size_t i) {
     RenderedView view = Load(files_[i], i);
     view.weight.assign(view.depth_m.size(), kRenderedWeight);
@@ -185,7 +185,7 @@ class Refiner {
       const double length = LengthAt(pose, x, y), a = static_cast<double>(refined.inverse_depth[at]);
       view->depth_m[at] = static_cast<float>(length / a);
       view->cosine[at] = static_cast<uint8_t>(std::clamp(std::lround(255.0 * refined.CosineAt(pose, x, y)), 1L, kMeetsNothing - 1L));
-      view->weight[at] = kFullWeight;
+      view->weight[at] = kConfirmedWeight;
     }
   }
 
@@ -208,7 +208,7 @@ class Refiner {
         const size_t at = static_cast<size_t>(row) * static_cast<size_t>(pose.width) + static_cast<size_t>(x);
         const bool had = view.depth_m[at] > 0.0F;
         total += had ? 1 : 0;
-        if (matched.weight[at] != kFullWeight) continue;
+        if (matched.weight[at] != kConfirmedWeight) continue;
         const Eigen::Vector3d place =
             pose.Centre() + static_cast<double>(matched.depth_m[at]) * pose.DirectionAt(x + 0.5, static_cast<double>(row) + 0.5);
         int agreeing = 0;
@@ -227,7 +227,7 @@ class Refiner {
         }
         view.depth_m[at] = matched.depth_m[at];
         view.cosine[at] = matched.cosine[at];
-        view.weight[at] = kFullWeight;
+        view.weight[at] = kConfirmedWeight;
       }
     });
     total_ += total;

@@ -13,9 +13,10 @@
 
 namespace skyquilt::surface {
 
-// The call of ImprovePhotoViews (views/render_depth_views.h); input.photos must be set. A depth that photos agree on counts in full in the fusion,
-// one that remains as rendered less. Rendered views are removed one by one as improved ones replace them. As many photos as fit in a tenth of
-// input.memory_bytes are kept in memory. Same bits for any number of threads. Throws base::InputError and base::Interrupted.
+// The call of ImprovePhotoViews (views/render_depth_views.h); input.photos must be set. A depth that another photo confirms
+// has kConfirmedWeight, one that remains as rendered half of kFullWeight. Rendered views are removed one by one as improved ones replace them. As
+// many photos as fit in a tenth of input.memory_bytes are kept in memory. Same bits for any number of threads. Throws base::InputError and
+// base::Interrupted.
 void RefineViews(const SurfaceInput& input, std::span<const ViewPose> poses, const std::string& key, const std::filesystem::path& folder,
                  std::vector<std::filesystem::path>* files, base::ThreadPool& threads);
 

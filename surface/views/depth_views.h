@@ -39,14 +39,15 @@ struct ViewPose {
 
 // As the cosine of a pixel without depth: its ray meets nothing at all where the scene has surface.
 constexpr uint8_t kMeetsNothing = 255;
-constexpr uint8_t kFullWeight = 255;
+// Weights of depths. A confirmed one counts as much as others in full, but another photo found it too, so it stands for two views.
+constexpr uint8_t kFullWeight = 254, kConfirmedWeight = 255;
 
 // One picture, row-major.
 struct DepthView {
   ViewPose pose;
   std::span<const float> depth_m;   // median depth along the ray through the pixel's centre, metres; NaN: none, or not trusted
   std::span<const uint8_t> cosine;  // 255 times the cosine of the angle between ray and surface normal; 0 or kMeetsNothing where there is no depth
-  std::span<const uint8_t> weight = {};  // how much each depth counts beside those of other pictures, of kFullWeight; empty: all of them in full
+  std::span<const uint8_t> weight = {};  // how much each depth counts beside others, of kFullWeight, or kConfirmedWeight; empty: all of them in full
 };
 
 class DepthViews {

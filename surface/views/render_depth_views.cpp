@@ -34,7 +34,7 @@ int64_t RaysOf(std::span<const ViewPose> poses) {
 }
 
 // Of everything that the pictures depend on, so that those of other options or of another scene are not taken for these.
-std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double voxel_m) {
+std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double voxel_m, bool improved) {
   std::string text;
   const auto add = [&text](const auto& value) {
     static_assert(std::is_arithmetic_v<std::decay_t<decltype(value)>>);
@@ -57,7 +57,7 @@ std::string KeyOf(const SurfaceInput& input, const PhotoPlaces& places, double v
   for (const ViewPose& pose : places.training) add_pose(pose);
   if (const double free_opacity = LimitsOf(input, voxel_m).max_free_opacity; free_opacity >= 0.0) add(free_opacity);
   if (LimitsOf(input, voxel_m).spread_across) add(true);
-  if (options.refine) add(options.refine);
+  if (improved) add(improved);
   return base::HashHex(text);
 }
 
@@ -145,7 +145,7 @@ void Report(const DepthViewRenderer& renderer, size_t photos) {
 DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::ThreadPool& threads, const ImprovePhotoViews& improve) {
   const PhotoPlaces places = PlacesOfPhotos(input);
   const bool level = survey::LooksLevel(*input.survey);
-  const std::string key = KeyOf(input, places, voxel_m);
+  const std::string key = KeyOf(input, places, voxel_m, static_cast<bool>(improve));
   const std::filesystem::path folder = input.work_folder / "views", joined = input.work_folder / "views.bin";
   std::error_code ignored;
   if (std::optional<DepthViews> finished = OpenFinished(joined, key)) {

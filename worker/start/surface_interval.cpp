@@ -19,8 +19,7 @@ std::vector<SurfaceInterval> SurfaceIntervals(const RaySource& source, const sur
   context.BuildNetworks();
   render::FieldSet set;
   set.context = &context;
-  render::EngineOptions options;
-  options.colour_threshold = 2.0F;  // depth only
+  const render::EngineOptions options = render::EngineOptions::DepthsOnly(0.85);
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   std::vector<SurfaceInterval> bands(survey.photos.size() * kTilesOfPhoto, {kUnknown, kUnknown, kUnknown});
   // Some photos at a time: the rays of thousands would need gigabytes.

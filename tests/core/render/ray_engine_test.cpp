@@ -119,6 +119,32 @@ TEST(RayEngineWork, SamplesBehindSurfacesAreSkipped) {
   EXPECT_LT(3 * dense, 2 * thin);
 }
 
+TEST(RayEngineWork, DepthsAloneAreTheSameWithFewerSamples) {
+  base::ThreadPool threads(2);
+  const std::vector<Ray> rays = RaysFromAbove(300);
+  int passed = 0;
+  for (const double bias : {-4.0, 0.0, 2.0}) {
+    const TrainedField f = RandomField(3, {0, 0, 0}, {10, 5, 6}, 0.5, bias);
+    FieldSet set;
+    set.blocks = {&f};
+    std::vector<RayColor> whole(rays.size()), depths(rays.size());
+    int64_t whole_samples = 0, depth_samples = 0;
+    RenderRays(set, rays, whole, {}, threads, &whole_samples);
+    RenderRays(set, rays, depths, EngineOptions::DepthsOnly(0.9), threads, &depth_samples);
+    EXPECT_LE(depth_samples, whole_samples);
+    const auto same = [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+    for (size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_TRUE(same(depths[i].depth_front, whole[i].depth_front));
+      EXPECT_TRUE(same(depths[i].depth_median, whole[i].depth_median));
+      EXPECT_TRUE(same(depths[i].depth_back, whole[i].depth_back));
+      EXPECT_EQ(depths[i].opacity >= 0.9F, whole[i].opacity >= 0.9F);
+      EXPECT_EQ(depths[i].rgb_srgb[0], 0.0F);
+      passed += std::isfinite(depths[i].depth_back) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(passed, 100);
+}
+
 TEST(RayEngineWork, WiderPixelsTakeFewerSamplesOfTheSameDensity) {
   base::ThreadPool threads(1);
   const TrainedField f = RandomField(4, {0, 0, 0}, {10, 5, 6}, 0.5, -2.0);

@@ -162,6 +162,38 @@ TEST(FusePiece, RaysThatMeetNothingDropWhatStandsInTheirWay) {
   }
 }
 
+TEST(FusePiece, DepthsCountByTheirWeight) {
+  base::ThreadPool threads(2);
+  // Four pictures of a plane at 0.1 m and four that see it half a voxel lower.
+  test::Pictures pictures = PlaneSeenBy(8, 0, 8);
+  for (size_t i = 4; i < 8; ++i) {
+    for (float& depth : pictures.depth_m[i]) depth += static_cast<float>(0.5 * kVoxel);
+  }
+  const auto height = [&](uint8_t weight) {
+    const std::vector<uint8_t> less(pictures.depth_m[0].size(), weight);
+    std::vector<DepthView> views = pictures.views;
+    for (size_t i = 4; i < 8; ++i) views[i].weight = less;
+    const Mesh mesh = FusePiece(views, Cube(8), BallOptions(), threads);
+    double sum = 0.0;
+    for (const Eigen::Vector3d& x : mesh.position) sum += x.z();
+    return sum / static_cast<double>(mesh.position.size());
+  };
+  EXPECT_NEAR(height(kFullWeight), 0.1 - 0.25 * kVoxel, 0.03 * kVoxel);
+  EXPECT_NEAR(height(51), 0.1 - 0.5 * kVoxel / 6.0, 0.03 * kVoxel);  // a fifth
+  EXPECT_NEAR(height(0), 0.1, 0.01 * kVoxel);
+}
+
+TEST(FusePiece, ConfirmedDepthsStandForTwoViews) {
+  base::ThreadPool threads(2);
+  const test::Pictures pictures = PlaneSeenBy(2, 0, 2);  // three views are asked for
+  const std::vector<uint8_t> confirmed(pictures.depth_m[0].size(), kConfirmedWeight), full(confirmed.size(), kFullWeight);
+  std::vector<DepthView> views = pictures.views;
+  for (DepthView& view : views) view.weight = full;
+  EXPECT_TRUE(FusePiece(views, Cube(16), BallOptions(), threads).triangle.empty());
+  views[1].weight = confirmed;
+  EXPECT_FALSE(FusePiece(views, Cube(16), BallOptions(), threads).triangle.empty());
+}
+
 TEST(FusePiece, NothingFromNothing) {
   base::ThreadPool threads(2);
   EXPECT_TRUE(FusePiece(std::span<const DepthView>(), Cube(16), BallOptions(), threads).position.empty());

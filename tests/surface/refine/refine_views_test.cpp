@@ -117,7 +117,7 @@ TEST_F(Refine, PhotosCorrectRenderedDepths) {
         const size_t i = static_cast<size_t>(y) * static_cast<size_t>(poses[v].width) + static_cast<size_t>(x);
         const double depth = TrueDepth(poses[v], x, y), error = std::abs(static_cast<double>(view->depth_m[i]) - depth);
         ++pixels;
-        if (view->weight[i] != kFullWeight) continue;
+        if (view->weight[i] != kConfirmedWeight) continue;
         ++full;
         before.push_back(std::abs(kWave_m * std::sin(0.15 * x + poses[v].photo) * std::cos(0.11 * y)));
         after.push_back(error);
@@ -139,7 +139,7 @@ TEST_F(Refine, RenderedDepthsStayWherePhotosSayNothing) {
     ASSERT_TRUE(view);
     EXPECT_EQ(view->depth_m, rendered[v]);
     EXPECT_EQ(view->cosine, std::vector<uint8_t>(rendered[v].size(), 200));
-    for (const uint8_t weight : view->weight) EXPECT_LT(weight, kFullWeight);
+    for (const uint8_t weight : view->weight) EXPECT_LT(weight, kConfirmedWeight);
   }
 }
 
@@ -166,7 +166,7 @@ TEST_F(Refine, IsTheSameForAnyThreadsAndAfterAnInterruption) {
   RefineIn("late", poses, photos, 2);
   const std::optional<RenderedView> again = LoadView(files[5], poses[5], kKey);
   ASSERT_TRUE(again);
-  EXPECT_GT(std::count(again->weight.begin(), again->weight.end(), kFullWeight), 0.5 * static_cast<double>(again->weight.size()));
+  EXPECT_GT(std::count(again->weight.begin(), again->weight.end(), kConfirmedWeight), 0.5 * static_cast<double>(again->weight.size()));
 }
 
 TEST_F(Refine, APhotoAloneIsLeftAsItIs) {

@@ -55,7 +55,7 @@ Needs NeedsOf(const WorkSize& size, const Settings& settings) {
   if (!size.level) needs.disk += kMapBytes * (surface + std::min(size.surface_pixels, settings.products.MostAutomaticCells()));
   if (settings.surface.enabled) {
     const surface::SurfaceOptions& options = settings.surface;
-    const double views = pixels * size.TrainingPhotos() / std::max(1.0, options.view_gsd * options.view_gsd) * (options.virtual_views ? 1.25 : 1.0);
+    const double views = pixels * size.TrainingPhotos() / std::max(1.0, options.view_gsd * options.view_gsd) * (options.virtual_views ? 2.0 : 1.0);
     needs.disk += 2.0 * kViewBytes * views + kMeshBytes * surface / (options.voxel_gsd * options.voxel_gsd) +
                   kTexelBytes * surface / (options.texel_gsd * options.texel_gsd);
   }

@@ -24,7 +24,8 @@ constexpr double kFineMapRays = 0.5;                                   // of the
 constexpr double kPixelsPerTrustRay = 16.0, kMostTrustTiles = 1500.0;  // as in evaluate/trust/measure_trust.cpp
 constexpr double kTexelLevels = 4.0 / 3.0;                             // coarser tiles have a quarter of the texels each
 constexpr double kWallShare = 1.3;                                     // surface per ground
-constexpr double kGapViews = 0.25, kLevelGapViews = 1.0;               // rays of virtual views, per ray of the photos' own (render_depth_views.cpp)
+constexpr double kRefinedWidth = 640.0;                                // pixels across a picture of depth whose depths photos improve
+constexpr double kGapViewsOfRefined = 0.25;                            // rays of virtual views, per ray of the photos' own; else 1
 constexpr double kMatchedPixels = 0.13e6;                              // of pictures of depth, compared with photos, per second and thread
 constexpr double kMeshCells = 0.12e6;                                  // voxels of the surface per second and thread
 constexpr double kLevelMesh = 2.0;                                     // times as long: walls, trees and what they hide
@@ -126,10 +127,12 @@ double Predictor::SurfaceSeconds(const Settings& settings) const {
   if (!options.enabled) return 0.0;
   const double detail = kWallShare * size_.SurfacePixelsAt(settings.run.image_width);
   const double of_photos = size_.TrainingPhotos() * size_.PixelsAt(settings.run.image_width) / std::max(1.0, Squared(options.view_gsd));
-  const double views = of_photos * (options.virtual_views ? 1.0 + (size_.level ? kLevelGapViews : kGapViews) : 1.0);
+  // Only pictures of depth that are wide enough are improved (surface/views/render_depth_views.cpp).
+  const bool refined = options.refine && std::sqrt(4.0 / 3.0 * size_.PixelsAt(settings.run.image_width)) >= kRefinedWidth * options.view_gsd;
+  const double views = of_photos * (options.virtual_views ? 1.0 + (refined && !size_.level ? kGapViewsOfRefined : 1.0) : 1.0);
   const double texels = detail / Squared(options.texel_gsd) * (options.tiles ? kTexelLevels : 1.0);
   const double fusion = views / std::max(1.0, rates_.fused_pixels) + detail / Squared(options.voxel_gsd) / (kMeshCells * size_.threads);
-  const double matching = options.refine ? of_photos / (kMatchedPixels * size_.threads) : 0.0;
+  const double matching = refined ? of_photos / (kMatchedPixels * size_.threads) : 0.0;
   return kStageStart_s + RaySeconds(views) + matching + texels / (std::max(1.0, rates_.texels) * size_.Speedup()) +
          (size_.level ? kLevelMesh : 1.0) * fusion;
 }

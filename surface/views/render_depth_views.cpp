@@ -1,5 +1,6 @@
 #include "surface/views/render_depth_views.h"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/order_statistics.h"
 #include "core/base/progress.h"
 #include "core/survey/view_kind.h"
 #include "surface/views/view_files.h"
@@ -22,8 +24,10 @@ namespace skyquilt::surface {
 namespace {
 
 constexpr double kCoarseBytes = 64e6;  // of the pictures that are kept for the search for gaps
-// Rays of virtual views, in rays of photo views. From above more of them hardly close another hole, but blur what photos show.
-constexpr double kVirtualShare = 0.25, kLevelVirtualShare = 1.0;
+// Rays of virtual views, in rays of photo views. Beside improved depths more of them hardly close another hole, but blur what photos show.
+constexpr double kVirtualShare = 1.0, kImprovedVirtualShare = 0.25;
+// Pixels across a picture of depth: in smaller ones, what is compared around a pixel is as large as a house.
+constexpr double kLeastImprovedWidth = 640.0;
 // Of virtual views beside improved ones: where photos agree on the surface, they must not blur it.
 constexpr uint8_t kVirtualWeight = 16;
 
@@ -31,6 +35,12 @@ int64_t RaysOf(std::span<const ViewPose> poses) {
   int64_t rays = 0;
   for (const ViewPose& pose : poses) rays += static_cast<int64_t>(pose.width) * pose.height;
   return rays;
+}
+
+bool AreWideEnough(std::span<const ViewPose> poses) {
+  std::vector<double> widths;
+  for (const ViewPose& pose : poses) widths.push_back(std::max(pose.width, pose.height));
+  return !widths.empty() && base::UpperMedian(widths) >= kLeastImprovedWidth;
 }
 
 // Of everything that the pictures depend on, so that those of other options or of another scene are not taken for these.
@@ -145,7 +155,14 @@ void Report(const DepthViewRenderer& renderer, size_t photos) {
 DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::ThreadPool& threads, const ImprovePhotoViews& improve) {
   const PhotoPlaces places = PlacesOfPhotos(input);
   const bool level = survey::LooksLevel(*input.survey);
-  const std::string key = KeyOf(input, places, voxel_m, static_cast<bool>(improve));
+  const bool improved = improve && AreWideEnough(places.training);
+  if (improve && !improved) {
+    base::LogInfo(
+        "surface: photos are not compared for their depths, as pictures of depth have fewer than {:g} pixels across; a larger "
+        "run.image_width or a smaller surface.view_gsd gives more",
+        kLeastImprovedWidth);
+  }
+  const std::string key = KeyOf(input, places, voxel_m, improved);
   const std::filesystem::path folder = input.work_folder / "views", joined = input.work_folder / "views.bin";
   std::error_code ignored;
   if (std::optional<DepthViews> finished = OpenFinished(joined, key)) {
@@ -159,13 +176,14 @@ DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::Thr
   renderer.Make(places.training, "surface views");
   std::vector<std::filesystem::path> files;  // of all views
   for (size_t i = 0; i < renderer.poses().size(); ++i) files.push_back(folder / ViewFileName(i));
-  if (improve) improve(renderer.poses(), key, folder, &files);
+  if (improved) improve(renderer.poses(), key, folder, &files);
   if (input.options.virtual_views) {
     CoarseDepths coarse(RaysOf(places.training), kCoarseBytes);
     for (size_t i = 0; i < files.size(); ++i) coarse.Add(LoadFinished(files[i], renderer.poses()[i], key).Get());
-    const auto budget = static_cast<int64_t>((level ? kLevelVirtualShare : kVirtualShare) * static_cast<double>(RaysOf(places.training)));
+    const auto budget =
+        static_cast<int64_t>((improved && !level ? kImprovedVirtualShare : kVirtualShare) * static_cast<double>(RaysOf(places.training)));
     const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget, level};
-    renderer.SetWeight(improve ? kVirtualWeight : kFullWeight);
+    renderer.SetWeight(improved ? kVirtualWeight : kFullWeight);
     renderer.Make(PlanGapViews(coarse, gaps, threads), "surface views of gaps");
     for (size_t i = files.size(); i < renderer.poses().size(); ++i) files.push_back(folder / ViewFileName(i));
   }

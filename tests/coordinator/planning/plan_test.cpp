@@ -39,7 +39,7 @@ double InventedSeconds(const std::string& stage, const Settings& s, const WorkSi
     return rates.product_s * cells + 1e5 * rates.ray_s * s.products.video_seconds * s.products.video_fps;
   }
   if (stage == "surface") {
-    const double views = n * pixels * (s.surface.virtual_views ? 1.25 : 1.0) / std::pow(s.surface.view_gsd, 2.0);
+    const double views = n * pixels * (s.surface.virtual_views ? 2.0 : 1.0) / std::pow(s.surface.view_gsd, 2.0);
     return s.surface.enabled ? rates.ray_s * views * (s.surface.obj ? 1.1 : 1.0) : 0.0;
   }
   if (stage == "buildings") return s.buildings.enabled && s.surface.enabled ? 0.05 * n : 0.0;

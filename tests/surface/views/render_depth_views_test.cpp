@@ -61,6 +61,26 @@ class RenderViews : public testing::Test {
 
 constexpr int64_t kPhotoRays = 100 * 75;
 
+TEST_F(RenderViews, OnlyWideViewsAreImproved) {
+  int calls = 0;
+  const ImprovePhotoViews improve = [&](std::span<const ViewPose> poses, const std::string&, const fs::path&, std::vector<fs::path>* files) {
+    ++calls;
+    EXPECT_EQ(poses.size(), 8U);
+    EXPECT_EQ(files->size(), poses.size());
+  };
+  base::ThreadPool threads(2);
+  RenderDepthViews(survey_.input, AnalyticSurvey::kVoxel, threads, improve);
+  EXPECT_EQ(calls, 0);  // 100 pixels wide
+  survey_.survey.cameras[0] = PinholeCamera(1400, 20, 1400.0);
+  survey_.info.gsd_m = 60.0 / 1400.0;
+  const DepthViews views = RenderDepthViews(survey_.input, AnalyticSurvey::kVoxel, threads, improve);
+  EXPECT_EQ(calls, 1);
+  for (size_t v = 0; v < views.size(); ++v) {
+    // Virtual ones count less beside improved ones.
+    EXPECT_EQ(views[v].weight[0] == kFullWeight, views.pose(v).photo >= 0);
+  }
+}
+
 TEST_F(RenderViews, DepthsAreThoseOfTheScene) {
   const DepthViews views = Render(survey_);
   ASSERT_GE(views.size(), 9U);

@@ -25,7 +25,6 @@ constexpr double kPixelsPerTrustRay = 16.0, kMostTrustTiles = 1500.0;  // as in 
 constexpr double kTexelLevels = 4.0 / 3.0;                             // coarser tiles have a quarter of the texels each
 constexpr double kWallShare = 1.3;                                     // surface per ground
 constexpr double kRefinedWidth = 640.0;                                // pixels across a picture of depth whose depths photos improve
-constexpr double kGapViewsOfRefined = 0.25;                            // rays of virtual views, per ray of the photos' own; else 1
 constexpr double kMatchedPixels = 0.13e6;                              // of pictures of depth, compared with photos, per second and thread
 constexpr double kMeshCells = 0.12e6;                                  // voxels of the surface per second and thread
 constexpr double kLevelMesh = 2.0;                                     // times as long: walls, trees and what they hide
@@ -129,7 +128,7 @@ double Predictor::SurfaceSeconds(const Settings& settings) const {
   const double of_photos = size_.TrainingPhotos() * size_.PixelsAt(settings.run.image_width) / std::max(1.0, Squared(options.view_gsd));
   // Only pictures of depth that are wide enough are improved (surface/views/render_depth_views.cpp).
   const bool refined = options.refine && std::sqrt(4.0 / 3.0 * size_.PixelsAt(settings.run.image_width)) >= kRefinedWidth * options.view_gsd;
-  const double views = of_photos * (options.virtual_views ? 1.0 + (refined && !size_.level ? kGapViewsOfRefined : 1.0) : 1.0);
+  const double views = of_photos * (options.virtual_views ? 2.0 : 1.0);
   const double texels = detail / Squared(options.texel_gsd) * (options.tiles ? kTexelLevels : 1.0);
   const double fusion = views / std::max(1.0, rates_.fused_pixels) + detail / Squared(options.voxel_gsd) / (kMeshCells * size_.threads);
   const double matching = refined ? of_photos / (kMatchedPixels * size_.threads) : 0.0;

@@ -15,6 +15,7 @@
 #include "core/base/errors.h"
 #include "core/base/file.h"
 #include "core/base/log.h"
+#include "core/base/order_statistics.h"
 #include "core/base/progress.h"
 #include "surface/refine/neighbours.h"
 #include "surface/refine/photo_picture.h"
@@ -129,7 +130,7 @@ class Refiner {
     fs::remove_all(matched_folder_, ignored);
     if (total_ == 0) return;
     base::LogInfo("surface depths: {:.0f} % of the photos' depths are improved by other photos, by {:.2g} pixels in the median, in {}",
-                  100.0 * static_cast<double>(agreed_) / static_cast<double>(total_), MedianMove(),
+                  100.0 * static_cast<double>(agreed_) / static_cast<double>(total_), moves_.empty() ? 0.0 : base::UpperMedian(moves_),
                   base::FormatDuration(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
   }
 
@@ -143,11 +144,7 @@ class Refiner {
 
   bool Improved(size_t i) const { return LoadView(improved_folder_ / ViewFileName(i), poses_[i], key_).has_value(); }
 
-  RenderedView Load(const fs::path& file, size_t i) const {
-    std::optional<RenderedView> view = LoadView(file, poses_[i], key_);
-    if (!view) throw base::InputError(file, "is missing or damaged", "Run the command again; it makes this view again");
-    return std::move(*view);
-  }
+  RenderedView Load(const fs::path& file, size_t i) const { return RequireView(file, poses_[i], key_); }
 
   // What the photo finds by itself; of a damaged file what remains of that in the improved view.
   RenderedView LoadMatched(size_t i) const {
@@ -236,13 +233,6 @@ class Refiner {
       if (!std::isnan(move)) moves_.push_back(move);
     }
     SaveView(view, key_, improved_folder_ / ViewFileName(i));
-  }
-
-  double MedianMove() {
-    if (moves_.empty()) return 0.0;
-    const auto middle = moves_.begin() + static_cast<std::ptrdiff_t>(moves_.size() / 2);
-    std::nth_element(moves_.begin(), middle, moves_.end());
-    return *middle;
   }
 
   const SurfaceInput& input_;

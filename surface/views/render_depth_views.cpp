@@ -84,12 +84,6 @@ std::optional<DepthViews> OpenFinished(const std::filesystem::path& file, const 
   return std::nullopt;
 }
 
-RenderedView LoadFinished(const std::filesystem::path& file, const ViewPose& pose, const std::string& key) {
-  std::optional<RenderedView> view = LoadView(file, pose, key);
-  if (!view) throw base::InputError(file, "is missing or damaged", "Run the command again; it makes this view again");
-  return std::move(*view);
-}
-
 // Renders lists of views, or loads those that an earlier run has finished.
 class DepthViewRenderer {
  public:
@@ -178,7 +172,7 @@ DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::Thr
   if (improved) improve(renderer.poses(), key, folder, &files);
   if (input.options.virtual_views) {
     CoarseDepths coarse(RaysOf(places.training), kCoarseBytes);
-    for (size_t i = 0; i < files.size(); ++i) coarse.Add(LoadFinished(files[i], renderer.poses()[i], key).Get());
+    for (size_t i = 0; i < files.size(); ++i) coarse.Add(RequireView(files[i], renderer.poses()[i], key).Get());
     const auto budget = static_cast<int64_t>(kVirtualShare * static_cast<double>(RaysOf(places.training)));
     const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget, level};
     renderer.SetWeight(improved ? kVirtualWeight : kFullWeight);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "core/base/cancel.h"
 #include "core/base/errors.h"
@@ -84,6 +85,12 @@ std::optional<RenderedView> LoadView(const std::filesystem::path& file, const Vi
   return view;
 }
 
+RenderedView RequireView(const std::filesystem::path& file, const ViewPose& pose, const std::string& key) {
+  std::optional<RenderedView> view = LoadView(file, pose, key);
+  if (!view) throw base::InputError(file, "is missing or damaged", "Run the command again; it renders this view again");
+  return std::move(*view);
+}
+
 void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const std::vector<std::filesystem::path>& parts,
                const std::filesystem::path& file) {
   std::vector<ViewRecord> records;
@@ -100,10 +107,9 @@ void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const
   joined.Append(BytesOf(records));
   for (size_t i = 0; i < poses.size(); ++i) {
     base::ThrowIfCancelled();
-    const std::optional<RenderedView> view = LoadView(parts[i], poses[i], key);
-    if (!view) throw base::InputError(parts[i], "is missing or damaged", "Run the command again; it renders this view again");
-    std::string picture(BytesOf(view->depth_m));
-    picture.append(BytesOf(view->cosine)).append(BytesOf(view->weight));
+    const RenderedView view = RequireView(parts[i], poses[i], key);
+    std::string picture(BytesOf(view.depth_m));
+    picture.append(BytesOf(view.cosine)).append(BytesOf(view.weight));
     picture.resize(PictureBytes(poses[i]), '\0');
     joined.Append(picture);
     joined.Append(base::HashHex(picture));

@@ -19,6 +19,9 @@ void SaveView(const RenderedView& view, const std::string& key, const std::files
 // Nothing when there is no such file, when it is damaged, and when it was made for another pose or key.
 std::optional<RenderedView> LoadView(const std::filesystem::path& file, const ViewPose& pose, const std::string& key);
 
+// The same, but throws base::InputError instead.
+RenderedView RequireView(const std::filesystem::path& file, const ViewPose& pose, const std::string& key);
+
 // Joins the files of these poses, in their order, one after the other in memory; atomic. Throws base::InputError when one is missing or
 // damaged or the disk is full, base::Interrupted.
 void JoinViews(const std::vector<ViewPose>& poses, const std::string& key, const std::vector<std::filesystem::path>& parts,

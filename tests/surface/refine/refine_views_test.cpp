@@ -151,8 +151,6 @@ TEST_F(Refine, IsTheSameForAnyThreadsAndAfterAnInterruption) {
 
   // As a run leaves it that was killed while it compared photos.
   Render("early");
-  std::vector<fs::path> none;
-  for (size_t i = 0; i < poses.size(); ++i) none.push_back(folder_ / "early" / ViewFileName(i));
   fs::create_directories(folder_ / "early" / "matched");
   base::WriteFileAtomically(folder_ / "early" / "matched" / ViewFileName(2), "half a file");
   EXPECT_EQ(All(RefineIn("early", poses, photos, 1)), whole);

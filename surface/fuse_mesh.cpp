@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -14,9 +15,11 @@
 #include "core/base/log.h"
 #include "core/base/progress.h"
 #include "core/survey/view_kind.h"
+#include "surface/fill_gaps.h"
 #include "surface/fusion/fuse.h"
 #include "surface/mesh/simplify.h"
 #include "surface/piece_fuser.h"
+#include "surface/views/render_depth_views.h"
 #include "surface/views/see_through.h"
 
 namespace skyquilt::surface {
@@ -62,13 +65,14 @@ LatticeBox BoxOf(const scene::SceneInfo& info, double voxel_m) {
   return box;
 }
 
-FuseOptions FuseOptionsOf(const SurfaceOptions& options, double voxel_m) {
+FuseOptions FuseOptionsOf(const SurfaceOptions& options, double voxel_m, bool coarse) {
   FuseOptions fuse;
   fuse.voxel_m = voxel_m;
   fuse.min_views = options.min_views;
   fuse.min_photos = 1;
   fuse.tile_voxels = kTileVoxels;
   fuse.max_angle_deg = kMaxAngle_deg;
+  fuse.coarse = coarse;
   return fuse;
 }
 
@@ -78,12 +82,12 @@ size_t PiecesTogether(const SurfaceInput& input) {
 }
 
 // Pieces that fit in memory, of larger voxels if they must be.
-PiecePlan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
+PiecePlan MakePlan(const SurfaceInput& input, const DepthViews& views, double voxel_m, bool coarse, base::ThreadPool& threads) {
   PieceWishes wishes;
   if (const size_t together = PiecesTogether(input); together > 0) wishes = {together, input.pieces->MemoryBytes()};
   double voxel = voxel_m;
   while (true) {
-    PiecePlan plan{.fuse = FuseOptionsOf(input.options, voxel), .pieces = {}};
+    PiecePlan plan{.fuse = FuseOptionsOf(input.options, voxel, coarse), .pieces = {}};
     try {
       plan.pieces = PlanPieces(views.All(), BoxOf(*input.info, voxel), plan.fuse, input.memory_bytes, threads, wishes, &plan.needs_bytes);
       if (voxel > voxel_m) {
@@ -94,7 +98,7 @@ PiecePlan MakePlan(const SurfaceInput& input, const DepthViews& views, double vo
       }
       return plan;
     } catch (const TooLittleMemory&) {
-      if (!(voxel < kLargestGrowth * voxel_m)) throw;
+      if (coarse || !(voxel < kLargestGrowth * voxel_m)) throw;
       voxel = std::min(1.25 * voxel, kLargestGrowth * voxel_m);
     }
   }
@@ -146,14 +150,15 @@ std::vector<MeshTile> FusePieces(const SurfaceInput& input, const DepthViews& vi
 }
 
 // With larger voxels where the whole mesh would not fit into the memory limit: a survey's mesh grows with its area.
-std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads, PiecePlan* plan,
-                                       double* fusing_s) {
+std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthViews& views, double voxel_m, bool coarse, base::ThreadPool& threads,
+                                       PiecePlan* plan, double* fusing_s) {
   for (double voxel = voxel_m;;) {
-    *plan = MakePlan(input, views, voxel, threads);
+    *plan = MakePlan(input, views, voxel, coarse, threads);
     try {
       return FusePieces(input, views, PieceFuser(*plan, *input.info, input.boundary, input.work_folder), threads, fusing_s);
     } catch (const MeshTooLarge& found) {
       // Triangles are as many as voxels on the surface, so they go with the square.
+      if (coarse) throw TooLittleMemory("the coarse mesh");
       voxel = plan->fuse.voxel_m * std::clamp(std::sqrt(found.times), kLeastStep, kLargestStep);
       if (voxel > kLargestMeshGrowth * voxel_m) {
         throw TooLittleMemory(fmt::format(
@@ -166,6 +171,45 @@ std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthVie
           "limit; a larger --memory, with --restart, gives the finer surface",
           voxel, voxel_m);
     }
+  }
+}
+
+// Of coarse meshes that close gaps, in pixels of the pictures of depth and voxels of the fine mesh: the first closes panes and small holes, the
+// second crowns of woods.
+struct Coarseness {
+  double pixels = 1.0, voxels = 1.0;
+};
+constexpr std::array<Coarseness, 2> kCoarseMeshes{{{3.0, 4.0}, {6.0, 12.0}}};
+constexpr double kTracedBytes = 150.0;  // of a triangle that rays are traced against
+
+// What the scene shows without its detail, fused from smaller pictures of depth in larger voxels: there photos agree where they do not in every
+// detail, on panes and in woods. What it has in gaps of the mesh is added. Its files are in a folder of input.work_folder.
+void CloseGaps(const SurfaceInput& input, const DepthViews& views, double voxel_m, const Coarseness& coarseness, base::ThreadPool& threads,
+               Mesh* mesh, FusedMesh* result) {
+  const double limit_bytes = input.mesh_bytes > 0.0 ? input.mesh_bytes : 0.5 * input.memory_bytes;
+  SurfaceInput coarse = input;
+  coarse.options.view_gsd *= coarseness.pixels;
+  coarse.work_folder = input.work_folder / kCoarseFolder / fmt::format("{:g}", coarseness.voxels);
+  coarse.mesh_bytes = std::max(1.0, limit_bytes - MeshBytes(*mesh) - kTracedBytes * static_cast<double>(mesh->triangle.size()));
+  std::filesystem::create_directories(coarse.work_folder);
+  const double coarse_voxel_m = coarseness.voxels * voxel_m;
+  try {
+    PiecePlan plan;
+    std::vector<Mesh> meshes;
+    {
+      const DepthViews coarse_views = RenderDepthViews(coarse, coarse_voxel_m, threads);
+      for (MeshTile& tile : FuseWithinMemory(coarse, coarse_views, coarse_voxel_m, true, threads, &plan, &result->fusing_s)) {
+        meshes.push_back(std::move(tile.mesh));
+      }
+    }
+    Mesh one = MergeMeshes(std::move(meshes));
+    DropIslands(&one, input.options.min_island_m2);
+    result->filled_m2 += FillGaps(one, coarse_voxel_m, views.All(), threads, mesh);
+    views.ReleasePages();
+  } catch (const TooLittleMemory&) {
+    base::LogWarning(
+        "gaps of the surface stay open, because a coarse mesh that closes them would not fit into the memory limit; a larger --memory, with "
+        "--restart, closes them");
   }
 }
 
@@ -216,7 +260,7 @@ std::vector<MeshTile> SplitAlongLattice(const Mesh& mesh, int tile_voxels) {
 FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double voxel_m, base::ThreadPool& threads) {
   PiecePlan plan;
   FusedMesh result;
-  std::vector<MeshTile> tiles = FuseWithinMemory(input, views, voxel_m, threads, &plan, &result.fusing_s);
+  std::vector<MeshTile> tiles = FuseWithinMemory(input, views, voxel_m, false, threads, &plan, &result.fusing_s);
   result.voxel_m = plan.fuse.voxel_m;
   result.tile_size_m = kTileVoxels * plan.fuse.voxel_m;
   const bool any = !tiles.empty();  // also when the boundary left nothing of them
@@ -243,13 +287,15 @@ FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double vo
     result.filled_m2 += FillPlanarHoles(&mesh, kMaxHole_m2, spacing_m, kOffPlaneVoxels * result.voxel_m, is_open);
     views.ReleasePages();
   }
+  if (input.options.fill_gaps && !level && !mesh.triangle.empty()) {
+    for (const Coarseness& coarseness : kCoarseMeshes) CloseGaps(input, views, result.voxel_m, coarseness, threads, &mesh, &result);
+  }
   result.edges = CountEdges(mesh);
   result.area_m2 = Area(mesh);
   result.tiles = SplitIntoTiles(mesh, result.tile_size_m);
   for (MeshTile& tile : result.tiles) tile.error_m = error_m;
-  base::LogInfo("surface of {} triangles and {:.0f} m2 in {} tile(s); {} small piece(s) dropped, {:.0f} m2 of holes{} closed",
-                base::FormatCount(static_cast<double>(mesh.triangle.size())), result.area_m2, result.tiles.size(), islands, result.filled_m2,
-                level ? "" : " in the ground");
+  base::LogInfo("surface of {} triangles and {:.0f} m2 in {} tile(s); {} small piece(s) dropped, {:.0f} m2 of gaps closed",
+                base::FormatCount(static_cast<double>(mesh.triangle.size())), result.area_m2, result.tiles.size(), islands, result.filled_m2);
   return result;
 }
 

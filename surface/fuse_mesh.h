@@ -23,6 +23,8 @@ struct FusedMesh {
 
 // Side of a tile in voxels.
 inline constexpr int kTileVoxels = 256;
+// Of the work folder, for files of coarse meshes.
+inline constexpr const char* kCoarseFolder = "coarse";
 
 // Finished pieces are kept in input.work_folder and not computed again. The result does not depend on the memory limit as long as the voxel stays the
 // same; how much larger it gets where the whole mesh does not fit depends on the pieces, which are smaller for several ranks. Throws base::UsageError

@@ -12,6 +12,8 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "core/survey/photo_pictures.h"
+#include "core/survey/view_kind.h"
 #include "surface/files/surface_files.h"
 #include "surface/fuse_mesh.h"
 #include "surface/maps/surface_maps.h"
@@ -25,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kWorkVersion = "5";  // of the files in the work folder
+constexpr const char* kWorkVersion = "6";  // of the files in the work folder
 
 fs::path TextureFolder(const fs::path& work_folder) {
   return work_folder / "textures";
@@ -50,22 +52,21 @@ bool IsFinest(const fs::path& file) {
   return file.filename().string().starts_with("0_") && file.extension() == ".bin";
 }
 
-// Textures of another voxel, which another memory limit may have chosen, are removed.
-void OpenTextureFolder(const fs::path& work_folder, double voxel_m) {
+// Textures of another mesh, which another memory limit may have given, or of other photos are removed.
+void OpenTextureFolder(const fs::path& work_folder, double voxel_m, double area_m2, const std::string& photos) {
   const fs::path folder = TextureFolder(work_folder);
-  const fs::path voxel_file = folder / "voxel.txt";
-  const std::string voxel = fmt::format("{:016x}\n", std::bit_cast<uint64_t>(voxel_m));
-  if (fs::exists(voxel_file) && base::ReadFile(voxel_file) == voxel) return;
+  const fs::path key_file = folder / "key.txt";
+  const std::string key = fmt::format("{:016x} {:016x} {}\n", std::bit_cast<uint64_t>(voxel_m), std::bit_cast<uint64_t>(area_m2), photos);
+  if (fs::exists(key_file) && base::ReadFile(key_file) == key) return;
   fs::remove_all(folder);
   fs::create_directories(folder);
-  base::WriteFileAtomically(voxel_file, voxel);
+  base::WriteFileAtomically(key_file, key);
 }
 
 BakeOptions BakeOptionsOf(const SurfaceInput& input, const MeshTile& tile, double voxel_m) {
   BakeOptions bake;
   bake.texel_m = input.options.texel_gsd * input.info->gsd_m * static_cast<double>(1U << static_cast<unsigned>(std::min(tile.id.level, 20)));
   bake.jpeg_quality = input.options.jpeg_quality;
-  bake.photo_detail = input.options.photo_detail;
   bake.point_spacing_m = tile.id.level == 0 && input.options.cloud ? voxel_m : 0.0;
   return bake;
 }
@@ -119,7 +120,7 @@ class SurfaceBuilder {
     WriteSurfaceTable(result_, edges_, frame_, input_.out_folder / "surface.json");
     // Only the textures are needed again, by scores.
     std::error_code ignored;
-    for (const char* done : {"views", "views.bin", "pieces", "pieces.job"}) fs::remove_all(input_.work_folder / done, ignored);
+    for (const char* done : {"views", "views.bin", "pieces", "pieces.job", kCoarseFolder}) fs::remove_all(input_.work_folder / done, ignored);
     RemoveCoarseTextures();
     return std::move(result_);
   }
@@ -164,10 +165,10 @@ class SurfaceBuilder {
   }
 
   void BakeAll(std::vector<MeshTile> tiles, const DepthViews& views, double voxel_m, HeightRaster terrain, SurfaceFiles* files) {
-    OpenTextureFolder(input_.work_folder, voxel_m);
+    OpenTextureFolder(input_.work_folder, voxel_m, result_.area_m2, input_.photos ? input_.photos->identity() : "none");
     double triangles = 0.0;
     for (const MeshTile& tile : tiles) triangles += static_cast<double>(tile.mesh.triangle.size());
-    const TextureBaker baker(input_, views, voxel_m);
+    TextureBaker baker(input_, views, voxel_m);
     base::Progress progress("surface texture", triangles, "triangles");
     for (MeshTile& tile : tiles) {
       base::ThrowIfCancelled();
@@ -188,6 +189,8 @@ class SurfaceBuilder {
       progress.Advance(done);
     }
     progress.Finish();
+    const std::set<std::string> unread = baker.Failures();
+    survey::WarnOfUnreadPhotos("the texture", {unread.begin(), unread.end()}, input_.survey->photos.size());
   }
 
   const SurfaceInput& input_;

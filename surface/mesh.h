@@ -16,7 +16,7 @@ struct Mesh {
   std::vector<Eigen::Vector3d> position;
   std::vector<uint64_t> key;    // identity of the vertex on the survey's lattice (fusion/fusion_lattice.h): the same in every piece
   std::vector<uint8_t> views;   // views that saw it, at most 255
-  std::vector<uint8_t> filled;  // 1: closes a hole; no view saw it
+  std::vector<uint8_t> filled;  // 1: closes a hole or gap: no measurement
   std::vector<Triangle> triangle;
 };
 

@@ -39,7 +39,7 @@ void SimplifyTiles(std::vector<MeshTile>* tiles, double max_error_m, base::Threa
 void PackPlan(const PiecePlan& plan, base::BytePacker* bytes) {
   const FuseOptions& fuse = plan.fuse;
   for (const double value : {fuse.voxel_m, fuse.truncation_voxels, fuse.max_angle_deg}) bytes->Add(value);
-  for (const int value : {fuse.min_views, fuse.min_photos, fuse.tile_voxels}) bytes->Add(value);
+  for (const int value : {fuse.min_views, fuse.min_photos, fuse.tile_voxels, fuse.coarse ? 1 : 0}) bytes->Add(value);
   bytes->AddCount(plan.pieces.size());
   for (const LatticeBox& piece : plan.pieces) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -52,7 +52,9 @@ void PackPlan(const PiecePlan& plan, base::BytePacker* bytes) {
 PiecePlan UnpackPlan(base::ByteUnpacker* bytes) {
   PiecePlan plan;
   for (double* value : {&plan.fuse.voxel_m, &plan.fuse.truncation_voxels, &plan.fuse.max_angle_deg}) bytes->Take(value);
-  for (int* value : {&plan.fuse.min_views, &plan.fuse.min_photos, &plan.fuse.tile_voxels}) bytes->Take(value);
+  int coarse = 0;
+  for (int* value : {&plan.fuse.min_views, &plan.fuse.min_photos, &plan.fuse.tile_voxels, &coarse}) bytes->Take(value);
+  plan.fuse.coarse = coarse != 0;
   plan.pieces.resize(bytes->TakeCount(6 * sizeof(int)));
   for (LatticeBox& piece : plan.pieces) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -155,7 +157,7 @@ std::vector<MeshTile> PieceFuser::Make(size_t piece, const DepthViews& views, ba
   tiles = SplitAlongLattice(FusePiece(views.All(), plan_.pieces[piece], plan_.fuse, threads), kTileVoxels);
   views.ReleasePages();
   CutToBoundary(&tiles);
-  SimplifyTiles(&tiles, kSimplifyVoxels * plan_.fuse.voxel_m, threads);
+  if (!plan_.fuse.coarse) SimplifyTiles(&tiles, kSimplifyVoxels * plan_.fuse.voxel_m, threads);
   SaveMeshTiles(tiles, file);
   return tiles;
 }
@@ -167,8 +169,9 @@ void PieceFuser::CutToBoundary(std::vector<MeshTile>* tiles) const {
   for (MeshTile& tile : *tiles) {
     Mesh& mesh = tile.mesh;
     std::erase_if(mesh.triangle, [&](const Triangle& t) {
-      const Eigen::Vector3d middle = (mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]]) / 3.0;
-      return !boundary_->Contains(frame.MapFromEnu(middle).head<2>());
+      const auto is_inside = [&](const Eigen::Vector3d& x) { return boundary_->Contains(frame.MapFromEnu(x).head<2>()); };
+      if (plan_.fuse.coarse) return !std::all_of(t.begin(), t.end(), [&](uint32_t v) { return is_inside(mesh.position[v]); });
+      return !is_inside((mesh.position[t[0]] + mesh.position[t[1]] + mesh.position[t[2]]) / 3.0);
     });
     DropUnusedVertices(&mesh);
   }

@@ -25,8 +25,9 @@ struct SurfaceOptions {
   double max_spread_voxels = 20.0;  // nor where the surface is blurred by more than this along the ray; where photos look level, across the surface
   int min_views = 3;                // faces seen by fewer views are dropped
   double min_island_m2 = 1.0;       // as are separate pieces with a smaller area; where photos look level, also at most 12 x 12 voxels
+  bool fill_gaps = true;            // what is left open is closed by a coarser surface; not where photos look level
   double texel_gsd = 1.0;           // pixels of the texture, in ground sampling distances
-  double photo_detail = 0.0;        // share of the fine detail of photos that is added to the texture, 0 to 1
+  bool photo_texture = true;        // its fine detail is that of photos; otherwise all of it is the field's
   int jpeg_quality = 88;            // of the texture
   bool glb = true, obj = true, ply = true, cloud = true, tiles = true;  // files
   bool maps = true;                                                     // terrain model, height above ground, hillshade, contours

@@ -17,7 +17,7 @@ struct SurfacePoint {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();    // length 1, ENU, out of the surface
   std::array<uint8_t, 3> rgb = {};
   uint8_t views = 0;   // photos and virtual views that saw it
-  uint8_t filled = 0;  // 1: closes a hole in the ground; nobody saw it
+  uint8_t filled = 0;  // 1: closes a gap of the surface: no measurement
 };
 
 struct PointCloud {

@@ -23,14 +23,16 @@ constexpr double kMostFineMapCells = 8e6;                              // as in 
 constexpr double kFineMapRays = 0.5;                                   // of their cells that get a ray (products/map_cells.h)
 constexpr double kPixelsPerTrustRay = 16.0, kMostTrustTiles = 1500.0;  // as in evaluate/trust/measure_trust.cpp
 constexpr double kTexelLevels = 4.0 / 3.0;                             // coarser tiles have a quarter of the texels each
-constexpr double kWallShare = 1.3;                                     // surface per ground
-constexpr double kRefinedWidth = 640.0;                                // pixels across a picture of depth whose depths photos improve
-constexpr double kMatchedPixels = 0.13e6;                              // of pictures of depth, compared with photos, per second and thread
-constexpr double kMeshCells = 0.12e6;                                  // voxels of the surface per second and thread
-constexpr double kLevelMesh = 2.0;                                     // times as long: walls, trees and what they hide
-constexpr double kReportPhotos = 3.0;                                  // pictures of a photo written per second and thread
-constexpr double kBuildingCells = 0.2e6;                               // cells of the surface per second and thread
-constexpr double kMeshScores = 1.0;                                    // comparing the mesh with a photo, too: as long as comparing the field
+constexpr double kPhotoTexels = 0.5;                                   // time of a texel from photos, in texels from the field
+constexpr double kCoarseViews = 0.14;      // pixels of coarse pictures of depth, in pixels of the fine ones (surface/fuse_mesh.h)
+constexpr double kWallShare = 1.3;         // surface per ground
+constexpr double kRefinedWidth = 640.0;    // pixels across a picture of depth whose depths photos improve
+constexpr double kMatchedPixels = 0.13e6;  // of pictures of depth, compared with photos, per second and thread
+constexpr double kMeshCells = 0.12e6;      // voxels of the surface per second and thread
+constexpr double kLevelMesh = 2.0;         // times as long: walls, trees and what they hide
+constexpr double kReportPhotos = 3.0;      // pictures of a photo written per second and thread
+constexpr double kBuildingCells = 0.2e6;   // cells of the surface per second and thread
+constexpr double kMeshScores = 1.0;        // comparing the mesh with a photo, too: as long as comparing the field
 constexpr double kTruthScores_s = 6.0;
 constexpr double kDepthPictureRays = 64.0 * 48.0;
 // Seconds per photo and thread of stage "masks", guessed: networks differ by far more than machines.
@@ -129,10 +131,11 @@ double Predictor::SurfaceSeconds(const Settings& settings) const {
   // Only pictures of depth that are wide enough are improved (surface/views/render_depth_views.cpp).
   const bool refined = options.refine && std::sqrt(4.0 / 3.0 * size_.PixelsAt(settings.run.image_width)) >= kRefinedWidth * options.view_gsd;
   const double views = of_photos * (options.virtual_views ? 2.0 : 1.0);
-  const double texels = detail / Squared(options.texel_gsd) * (options.tiles ? kTexelLevels : 1.0);
+  const double coarse = options.fill_gaps && !size_.level ? kCoarseViews : 0.0;
+  const double texels = detail / Squared(options.texel_gsd) * (options.tiles ? kTexelLevels : 1.0) * (options.photo_texture ? kPhotoTexels : 1.0);
   const double fusion = views / std::max(1.0, rates_.fused_pixels) + detail / Squared(options.voxel_gsd) / (kMeshCells * size_.threads);
   const double matching = refined ? of_photos / (kMatchedPixels * size_.threads) : 0.0;
-  return kStageStart_s + RaySeconds(views) + matching + texels / (std::max(1.0, rates_.texels) * size_.Speedup()) +
+  return kStageStart_s + RaySeconds((1.0 + coarse) * views) + matching + texels / (std::max(1.0, rates_.texels) * size_.Speedup()) +
          (size_.level ? kLevelMesh : 1.0) * fusion;
 }
 

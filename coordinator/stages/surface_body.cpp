@@ -25,8 +25,8 @@ std::optional<image::PixelCache> PhotosOf(const Pipeline& pipeline, const survey
     std::filesystem::create_directories(file.parent_path());
     return image::PixelCache::Open(file, PixelSources(survey), pipeline.settings.run.image_width, threads);
   } catch (const base::InputError& error) {
-    if (pipeline.settings.surface.photo_detail > 0.0) throw;
-    base::LogWarning("the surface is made without photos, so walls and small things come out less exact: {}", error.what());
+    base::LogWarning("the surface is made without photos, so walls and small things come out less exact, and the texture less sharp: {}",
+                     error.what());
     return std::nullopt;
   }
 }
@@ -60,7 +60,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.work_folder = project.SurfaceWorkFolder();
   input.out_folder = project.SurfaceFolder();
   std::optional<image::PixelCache> photos;
-  if (settings.surface.refine || settings.surface.photo_detail > 0.0) photos = PhotosOf(pipeline, survey, session.threads());
+  if (settings.surface.refine || settings.surface.photo_texture) photos = PhotosOf(pipeline, survey, session.threads());
   if (photos) input.photos = &*photos;
   const surface::SurfaceResult result = surface::MakeSurface(input, session.threads());
   pipeline.rendering_s += result.fusing_s;

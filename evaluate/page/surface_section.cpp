@@ -37,7 +37,7 @@ std::string MadeFacts(const surface::SurfaceScores& scores) {
   fact("Triangles", CountOrDash(record.triangles));
   if (record.points >= 0) fact("Points of the cloud", FormatInteger(record.points));
   if (std::isfinite(record.area_m2)) fact("Area", FormatInteger(std::llround(record.area_m2)) + " m\xC2\xB2");
-  if (std::isfinite(record.filled_m2)) fact("Closed holes", FormatFixed(record.filled_m2, 0, "m\xC2\xB2"));
+  if (std::isfinite(record.filled_m2)) fact("Closed holes and gaps", FormatFixed(record.filled_m2, 0, "m\xC2\xB2"));
   if (std::isfinite(record.voxel_m)) fact("Cells in which depths were fused", Centimetres(record.voxel_m));
   if (record.photos >= 0) {
     fact("Views", fmt::format("{} of photos, {} others", FormatInteger(record.photos), CountOrDash(record.virtual_views)));

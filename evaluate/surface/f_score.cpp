@@ -122,8 +122,9 @@ std::vector<ScoredDistance> ScoredDistances(double gsd_m) {
 std::vector<SurfaceSample> SampleMesh(const SurfacePair& pair) {
   const NearBoxes near(pair.boxes, pair.mesh.middle);
   std::vector<SurfaceSample> samples = SampleSurface(
-      pair.mesh.position, pair.mesh.triangle, [&](uint32_t i) { return near.Touches(pair.mesh.position, pair.mesh.triangle[i]); },
-      AreaPerSample(pair.gsd_m), kMostSamples);
+      pair.mesh.position, pair.mesh.triangle,
+      [&](uint32_t i) { return !pair.mesh.IsFilled(i) && near.Touches(pair.mesh.position, pair.mesh.triangle[i]); }, AreaPerSample(pair.gsd_m),
+      kMostSamples);
   std::erase_if(samples,
                 [&](const SurfaceSample& sample) { return photos::BlockAt(pair.mesh.middle + sample.point.cast<double>(), pair.boxes) < 0; });
   return samples;
@@ -154,7 +155,11 @@ SurfaceComparison CompareSurfaces(const SurfacePair& pair, std::span<const Surfa
     });
   }
   {
-    const NearestTriangles nearest(mesh.position, mesh.triangle);
+    std::vector<std::array<uint32_t, 3>> measured;
+    for (uint32_t i = 0; i < mesh.triangle.size(); ++i) {
+      if (!mesh.IsFilled(i)) measured.push_back(mesh.triangle[i]);
+    }
+    const NearestTriangles nearest(mesh.position, measured);
     from_truth = ForAllSamples(true_samples, progress, threads, [&](const SurfaceSample& sample) -> SampleDistance {
       const Eigen::Vector3d point = truth.middle + sample.point.cast<double>();
       if (!pair.seen.Sees(point, truth.Normal(sample.triangle))) return {};

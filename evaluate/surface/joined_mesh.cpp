@@ -40,7 +40,9 @@ SurfaceMesh::SurfaceMesh(std::vector<skyquilt::surface::TexturedTile> tiles, con
     for (const skyquilt::surface::Triangle& corner : tile.triangle) {
       const bool usable =
           std::all_of(corner.begin(), corner.end(), [&](uint32_t c) { return c < tile.position.size() && tile.position[c].allFinite(); });
-      if (usable) triangle.push_back({first + corner[0], first + corner[1], first + corner[2]});
+      if (!usable) continue;
+      triangle.push_back({first + corner[0], first + corner[1], first + corner[2]});
+      filled.push_back(std::any_of(corner.begin(), corner.end(), [&](uint32_t c) { return c < tile.filled.size() && tile.filled[c] != 0; }) ? 1 : 0);
     }
     tile = {};  // both together may not fit in memory
   }

@@ -28,6 +28,8 @@ struct SurfaceMesh {
   // The texture of a tile; empty: it has none. Throws base::InputError when its file cannot be read any more. Thread-safe.
   std::vector<uint8_t> JpegOf(size_t tile) const;
   bool HasTexture(size_t tile) const { return !atlas[tile].jpeg.empty() || !atlas[tile].file.empty(); }
+  // Whether the triangle closes a gap: it is shown, but no measurement.
+  bool IsFilled(uint32_t triangle_index) const { return !filled.empty() && filled[triangle_index] != 0; }
   // Index into `atlas`.
   size_t AtlasOf(uint32_t triangle_index) const;
 
@@ -35,7 +37,8 @@ struct SurfaceMesh {
   std::vector<Eigen::Vector3f> position;
   std::vector<Eigen::Vector2f> uv;  // as in surface::TexturedTile; one per position
   std::vector<std::array<uint32_t, 3>> triangle;
-  std::vector<Atlas> atlas;  // one per tile, in the order given
+  std::vector<uint8_t> filled;  // per triangle, 1: IsFilled; empty: none
+  std::vector<Atlas> atlas;     // one per tile, in the order given
 };
 
 }  // namespace skyquilt::evaluate::surface

@@ -53,7 +53,7 @@ struct SurfaceRecord {
   int64_t points = -1;  // of the point cloud
   int64_t photos = -1, virtual_views = -1;
   double area_m2 = kNotMeasured;
-  double filled_m2 = kNotMeasured;  // closed holes
+  double filled_m2 = kNotMeasured;  // closed holes and gaps
   double voxel_m = kNotMeasured;
   double seconds = kNotMeasured;
   std::vector<SurfaceFile> files;

@@ -7,9 +7,9 @@
 #include "core/base/cancel.h"
 #include "core/base/order_statistics.h"
 #include "core/base/progress.h"
+#include "core/survey/picture_colors.h"
 #include "products/photo_map/node_views.h"
 #include "products/photo_map/photo_choice.h"
-#include "products/photo_map/picture_colors.h"
 #include "products/photo_map/seam_labels.h"
 
 namespace skyquilt::products {
@@ -68,12 +68,12 @@ class TileOfNodes {
         candidates_(static_cast<size_t>(columns_) * static_cast<size_t>(rows_)),
         seen_(candidates_.size(), 0) {}
 
-  void FindCandidates(const ViewFinder& finder, const PhotoLight& light, PhotoPictures& small) {
+  void FindCandidates(const ViewFinder& finder, const PhotoLight& light, survey::PhotoPictures& small) {
     const CellPlaces places(input_.grid, input_.projection, kNodeCells * column_, kNodeCells * row_, kNodeCells * columns_, kNodeCells * rows_);
     const Eigen::Vector2d centre_cell(kNodeCells * (column_ + 0.5 * columns_), kNodeCells * (row_ + 0.5 * rows_));
     const double radius_m = 0.5 * kNodeCells * input_.grid.resolution_m * std::hypot(columns_, rows_);
     const std::vector<int32_t> around = finder.Around(places.At(centre_cell.x(), centre_cell.y(), MiddleHeight()), radius_m);
-    std::vector<std::shared_ptr<const PhotoPicture>> held(input_.survey.photos.size());
+    std::vector<std::shared_ptr<const survey::PhotoPicture>> held(input_.survey.photos.size());
     std::vector<NodeView> views;
     for (int y = 0; y < rows_; ++y) {
       for (int x = 0; x < columns_; ++x) {
@@ -89,7 +89,7 @@ class TileOfNodes {
           const std::optional<Colors> color = SmallColor(input_, small, view, &held[photo]);
           if (!color) continue;
           const std::array<float, 3> factors = light.At(photo, static_cast<size_t>(input_.survey.photos[photo].camera), Radius2Of(input_, view));
-          candidates.push_back({view, InLight(*color, factors), static_cast<float>(view.cost), false});
+          candidates.push_back({view, survey::InLight(*color, factors), static_cast<float>(view.cost), false});
         }
         MarkMoved(candidates, FieldColor(input_, position));
       }
@@ -233,7 +233,7 @@ std::vector<Eigen::Vector3d> EyesOnMap(const survey::Survey& survey, const gis::
   return eyes;
 }
 
-MapNodes ChoosePhotosOfNodes(const PhotoMapInput& input, const PhotoLight& light, PhotoPictures& small, base::ThreadPool& threads) {
+MapNodes ChoosePhotosOfNodes(const PhotoMapInput& input, const PhotoLight& light, survey::PhotoPictures& small, base::ThreadPool& threads) {
   MapNodes nodes = MapNodes::Of(input.grid);
   const ViewFinder finder(input);
   const int tile_columns = (nodes.columns + kTileNodes - 1) / kTileNodes, tile_rows = (nodes.rows + kTileNodes - 1) / kTileNodes;

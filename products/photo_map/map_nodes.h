@@ -9,10 +9,10 @@
 
 #include "core/base/thread_pool.h"
 #include "core/gis/map_projection.h"
+#include "core/survey/photo_pictures.h"
 #include "core/survey/survey.h"
 #include "products/photo_map/height_grid.h"
 #include "products/photo_map/photo_light.h"
-#include "products/photo_map/photo_pictures.h"
 
 namespace skyquilt::products {
 
@@ -71,6 +71,6 @@ std::vector<Eigen::Vector3d> EyesOnMap(const survey::Survey& survey, const gis::
 
 // Photos whose colours are far from what the others and the field show of a place are not chosen there: something moved. Progress is shown; the same
 // result for any number of threads. Throws base::Interrupted.
-MapNodes ChoosePhotosOfNodes(const PhotoMapInput& input, const PhotoLight& light, PhotoPictures& small, base::ThreadPool& threads);
+MapNodes ChoosePhotosOfNodes(const PhotoMapInput& input, const PhotoLight& light, survey::PhotoPictures& small, base::ThreadPool& threads);
 
 }  // namespace skyquilt::products

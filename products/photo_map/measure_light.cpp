@@ -7,9 +7,9 @@
 
 #include "core/base/cancel.h"
 #include "core/base/progress.h"
+#include "core/survey/picture_colors.h"
 #include "products/photo_map/node_views.h"
 #include "products/photo_map/overlap_gains.h"
-#include "products/photo_map/picture_colors.h"
 
 namespace skyquilt::products {
 namespace {
@@ -24,7 +24,7 @@ constexpr float kBrightestCompared = 0.8F;
 Colors Comparable(const Colors& display) {
   Colors light{};
   for (size_t k = 0; k < 3; ++k) {
-    const float value = QuickLight(display[k]);
+    const float value = survey::QuickLight(display[k]);
     light[k] = value > kDarkestCompared && value < kBrightestCompared ? value : std::numeric_limits<float>::quiet_NaN();
   }
   return light;
@@ -55,7 +55,7 @@ LightPlaces PlacesForLight(const PhotoMapInput& input) {
 
 }  // namespace
 
-PhotoLight MeasureLight(const PhotoMapInput& input, PhotoPictures& small, base::ThreadPool& threads) {
+PhotoLight MeasureLight(const PhotoMapInput& input, survey::PhotoPictures& small, base::ThreadPool& threads) {
   const ViewFinder finder(input);
   const LightPlaces places = PlacesForLight(input);
   const size_t photos = input.survey.photos.size();
@@ -78,7 +78,7 @@ PhotoLight MeasureLight(const PhotoMapInput& input, PhotoPictures& small, base::
       const Colors wanted = field ? Comparable(*field) : Colors{};
       std::vector<std::pair<int32_t, Colors>> shown;
       for (const NodeView& view : views) {
-        std::shared_ptr<const PhotoPicture> held;
+        std::shared_ptr<const survey::PhotoPicture> held;
         const std::optional<Colors> color = SmallColor(input, small, view, &held);
         if (!color) continue;
         const Colors light = Comparable(*color);

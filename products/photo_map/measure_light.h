@@ -7,6 +7,6 @@
 namespace skyquilt::products {
 
 // From the field's colours where they are known, otherwise from what photos show of the same places. small: pictures with about a pixel per node.
-PhotoLight MeasureLight(const PhotoMapInput& input, PhotoPictures& small, base::ThreadPool& threads);
+PhotoLight MeasureLight(const PhotoMapInput& input, survey::PhotoPictures& small, base::ThreadPool& threads);
 
 }  // namespace skyquilt::products

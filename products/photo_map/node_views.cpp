@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/survey/picture_colors.h"
 #include "products/photo_map/photo_choice.h"
-#include "products/photo_map/picture_colors.h"
 
 namespace skyquilt::products {
 namespace {
@@ -48,7 +48,7 @@ int ViewFinder::Find(const Eigen::Vector3d& place_enu, const Eigen::Vector3d& pl
     if (views->size() == most && in_frame >= kMostSeen) break;
     const survey::Photo& photo = input_.survey.photos[static_cast<size_t>(view.photo)];
     const camera::Camera& camera = input_.survey.cameras[static_cast<size_t>(photo.camera)];
-    const std::optional<Eigen::Vector2d> pixel = PixelIn(camera, photo.cam_from_enu, place_enu);
+    const std::optional<Eigen::Vector2d> pixel = survey::PixelIn(camera, photo.cam_from_enu, place_enu);
     if (!pixel) continue;
     in_frame = std::min(in_frame + 1, kMostSeen);
     if (views->size() == most) continue;
@@ -74,18 +74,19 @@ double ViewFinder::SlackAt(const Eigen::Vector3d& place_map) const {
   return static_cast<double>(input_.slack_m[grid.Index(column, row)]);
 }
 
-std::optional<Colors> SmallColor(const PhotoMapInput& input, PhotoPictures& small, const NodeView& view, std::shared_ptr<const PhotoPicture>* held) {
+std::optional<Colors> SmallColor(const PhotoMapInput& input, survey::PhotoPictures& small, const NodeView& view,
+                                 std::shared_ptr<const survey::PhotoPicture>* held) {
   if (!*held) *held = small.Of(static_cast<size_t>(view.photo));
   if (!*held) return std::nullopt;
-  const PhotoPicture& picture = **held;
+  const survey::PhotoPicture& picture = **held;
   const camera::Camera& camera = input.survey.cameras[static_cast<size_t>(input.survey.photos[static_cast<size_t>(view.photo)].camera)];
   const Eigen::Vector2d pixel(view.pixel.x() * picture.rgb.width / camera.width, view.pixel.y() * picture.rgb.height / camera.height);
-  if (IsMasked(picture, pixel)) return std::nullopt;
-  return LinearAt(picture, pixel);
+  if (survey::IsMasked(picture, pixel)) return std::nullopt;
+  return survey::LinearAt(picture, pixel);
 }
 
 float Radius2Of(const PhotoMapInput& input, const NodeView& view) {
-  return Radius2(input.survey.cameras[static_cast<size_t>(input.survey.photos[static_cast<size_t>(view.photo)].camera)], view.pixel);
+  return survey::Radius2(input.survey.cameras[static_cast<size_t>(input.survey.photos[static_cast<size_t>(view.photo)].camera)], view.pixel);
 }
 
 std::optional<Colors> FieldColor(const PhotoMapInput& input, const Eigen::Vector2d& easting_northing) {

@@ -41,7 +41,8 @@ class ViewFinder {
 
 // Colour of a photo at a pixel of the full photo, as its small picture shows it; nothing where it is masked or cannot be read.
 // *held keeps its small picture.
-std::optional<Colors> SmallColor(const PhotoMapInput& input, PhotoPictures& small, const NodeView& view, std::shared_ptr<const PhotoPicture>* held);
+std::optional<Colors> SmallColor(const PhotoMapInput& input, survey::PhotoPictures& small, const NodeView& view,
+                                 std::shared_ptr<const survey::PhotoPicture>* held);
 // Radius2 of the view's pixel.
 float Radius2Of(const PhotoMapInput& input, const NodeView& view);
 // Mean display values of the field around a place; nothing where the field has no surface.

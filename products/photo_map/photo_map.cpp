@@ -1,6 +1,7 @@
 #include "products/photo_map/photo_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/cancel.h"
@@ -15,19 +16,31 @@ constexpr int kTileColumns = 1024;
 constexpr double kSmallPixelsPerNode = 1.0;
 constexpr double kPixelsPerCell = 1.6;  // along an axis: photos that are finer are reduced
 
+// Photos reduced to about pixels_per_cell pixels per cell of cell_m metres on the ground.
+survey::PhotoPictures PicturesFor(const PhotoMapInput& input, double cell_m, double pixels_per_cell) {
+  const auto read = [&survey = input.survey, ground_z = input.ground_z, cell_m, pixels_per_cell](size_t photo) {
+    const survey::Photo& source = survey.photos[photo];
+    const camera::Camera& camera = survey.cameras[static_cast<size_t>(source.camera)];
+    const double gsd_m = camera::GroundSamplingDistance(camera, std::max(source.cam_from_enu.OriginInSource().z() - ground_z, 1e-6));
+    const double width = std::ceil(pixels_per_cell * camera.width * gsd_m / cell_m);
+    return survey::ReadPhotoPicture(survey, photo, static_cast<int>(std::min<double>(camera.width, width)));
+  };
+  return {input.survey.photos.size(), read, input.picture_bytes};
+}
+
 }  // namespace
 
 PhotoMap::PhotoMap(const PhotoMapInput& input, PhotoLight light, MapNodes nodes)
     : input_(input),
       light_(std::move(light)),
       nodes_(std::move(nodes)),
-      pictures_(input.survey, input.ground_z, input.grid.resolution_m, kPixelsPerCell, input.picture_bytes),
+      pictures_(PicturesFor(input, input.grid.resolution_m, kPixelsPerCell)),
       eyes_map_(EyesOnMap(input.survey, input.projection)) {
   SKYQUILT_CHECK(input.survey.photos.size() <= kMostMapPhotos, std::to_string(input.survey.photos.size()) + " photos");
 }
 
 PhotoMap::PhotoMap(const PhotoMapInput& input, base::ThreadPool& threads) : PhotoMap(input, PhotoLight{}, MapNodes{}) {
-  PhotoPictures small(input.survey, input.ground_z, kNodeCells * input.grid.resolution_m, kSmallPixelsPerNode, input.picture_bytes);
+  survey::PhotoPictures small = PicturesFor(input, kNodeCells * input.grid.resolution_m, kSmallPixelsPerNode);
   light_ = MeasureLight(input_, small, threads);
   nodes_ = ChoosePhotosOfNodes(input_, light_, small, threads);
   failures_ = small.Failures();

@@ -50,7 +50,7 @@ class PhotoMap {
   PhotoLight light_;
   MapNodes nodes_;
   std::vector<std::string> failures_;
-  PhotoPictures pictures_;  // at the map's detail
+  survey::PhotoPictures pictures_;  // at the map's detail
   std::vector<Eigen::Vector3d> eyes_map_;
 };
 

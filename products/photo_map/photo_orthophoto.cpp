@@ -30,7 +30,6 @@
 namespace skyquilt::products {
 namespace {
 
-constexpr size_t kNamedFailures = 3;
 constexpr int kFewestViews = 2;     // of the ground inside the cutline
 constexpr double kStepCells = 9.0;  // heights of neighbouring cells that differ by more are a step: a roof's edge
 constexpr int kHoleCells = 60;      // from a cell without a surface to those with one
@@ -112,13 +111,6 @@ double FlownHeight(const survey::Survey& survey, double ground_z) {
     if (height_m > 0.0) heights.push_back(height_m);
   }
   return base::Median(heights);
-}
-
-void WarnOfFailures(const std::vector<std::string>& failures, size_t usable) {
-  if (failures.empty()) return;
-  const size_t named = std::min(failures.size(), kNamedFailures);
-  base::LogWarning("the orthophoto does without {} of {} photos, which cannot be read:\n  {}{}", failures.size(), usable,
-                   base::Join(std::span(failures).first(named), "\n  "), named < failures.size() ? "\n  ..." : "");
 }
 
 gis::GeoTiffSpec SourcesSpec(const scene::SceneInfo& info, const gis::MapGrid& grid) {
@@ -241,7 +233,7 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
                             .flown_height_m = FlownHeight(survey, ground_z),
                             .picture_bytes = photos.memory};
   PhotoMap map(input, threads);
-  WarnOfFailures(map.failures(), n_usable);
+  survey::WarnOfUnreadPhotos("the orthophoto", map.failures(), n_usable);
   made.unreadable = static_cast<int>(map.failures().size());
   if (map.failures().size() == n_usable) {
     base::LogWarning("no photo can be read, so the orthophoto is drawn from the trained scene. Put the photos back to {}, then run this again",

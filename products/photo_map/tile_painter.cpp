@@ -4,9 +4,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/survey/picture_colors.h"
 #include "products/photo_map/band_blend.h"
 #include "products/photo_map/photo_map.h"
-#include "products/photo_map/picture_colors.h"
 
 namespace skyquilt::products {
 namespace {
@@ -34,7 +34,7 @@ TileArea SurfaceUnder(const TileArea& area, const gis::MapGrid& map, const gis::
 }  // namespace
 
 TilePainter::TilePainter(const PhotoMapInput& input, const MapNodes& nodes, const PhotoLight& light, const std::vector<Eigen::Vector3d>& eyes_map,
-                         PhotoPictures& pictures, const TileArea& core)
+                         survey::PhotoPictures& pictures, const TileArea& core)
     : input_(input),
       nodes_(nodes),
       light_(light),
@@ -100,11 +100,11 @@ bool TilePainter::ColorOf(int32_t photo, const Used& used, size_t cell, float* r
   const auto columns = static_cast<size_t>(area_.columns);
   const Eigen::Vector3d place = places_.At(area_.column + static_cast<double>(cell % columns), area_.row + static_cast<double>(cell / columns),
                                            static_cast<double>(height_m_[cell]));
-  const std::optional<Eigen::Vector2d> pixel = PixelIn(used.picture->camera, source.cam_from_enu, place);
-  if (!pixel || IsMasked(*used.picture, *pixel)) return false;
+  const std::optional<Eigen::Vector2d> pixel = survey::PixelIn(used.picture->camera, source.cam_from_enu, place);
+  if (!pixel || survey::IsMasked(*used.picture, *pixel)) return false;
   const std::array<float, 3> factors =
-      light_.At(static_cast<size_t>(photo), static_cast<size_t>(source.camera), Radius2(used.picture->camera, *pixel));
-  const std::array<float, 3> color = InLight(LanczosAt(*used.picture, *pixel), factors);
+      light_.At(static_cast<size_t>(photo), static_cast<size_t>(source.camera), survey::Radius2(used.picture->camera, *pixel));
+  const std::array<float, 3> color = survey::InLight(LanczosAt(*used.picture, *pixel), factors);
   std::copy(color.begin(), color.end(), rgb);
   return true;
 }

@@ -15,7 +15,7 @@ class TilePainter {
  public:
   // References are kept. eyes_map: EyesOnMap. Paints `core` and what is around it as far as blending reaches.
   TilePainter(const PhotoMapInput& input, const MapNodes& nodes, const PhotoLight& light, const std::vector<Eigen::Vector3d>& eyes_map,
-              PhotoPictures& pictures, const TileArea& core);
+              survey::PhotoPictures& pictures, const TileArea& core);
   // Writes the core's cells; row_cells: cells from one row to the next in both.
   void Paint(uint8_t* rgba, uint16_t* sources, size_t row_cells);
 
@@ -26,8 +26,8 @@ class TilePainter {
   enum Sight : uint8_t { kUnknown = 0, kHidden, kSeen };
   // A photo that is used in this tile.
   struct Used {
-    std::shared_ptr<const PhotoPicture> picture;  // null: cannot be read
-    std::vector<uint8_t> sight;                   // per cell of the surface around the tile
+    std::shared_ptr<const survey::PhotoPicture> picture;  // null: cannot be read
+    std::vector<uint8_t> sight;                           // per cell of the surface around the tile
   };
   Used& UsedPhoto(int32_t photo);
   bool SeesCell(int32_t photo, Used& used, int surface_column, int surface_row);
@@ -45,7 +45,7 @@ class TilePainter {
   const MapNodes& nodes_;
   const PhotoLight& light_;
   const std::vector<Eigen::Vector3d>& eyes_map_;
-  PhotoPictures& pictures_;
+  survey::PhotoPictures& pictures_;
   TileArea core_, area_;
   CellPlaces places_;
   TileArea sight_;  // cells of the surface

@@ -26,6 +26,7 @@ struct FuseOptions {
   int min_views = 3;            // views, virtual ones included, that must have seen a face
   int min_photos = 1;           // of them photos
   int tile_voxels = 256;        // borders between pieces are at multiples of it
+  bool coarse = false;          // large triangles: pieces are not simplified, and end before a boundary
   double max_angle_deg = 85.0;  // a surface seen at a larger angle from its normal counts as seen at this angle
 };
 

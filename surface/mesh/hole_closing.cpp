@@ -143,13 +143,18 @@ double AddPatch(const HolePatch& patch, const Hole& hole, uint64_t* next_key, Me
 
 }  // namespace
 
+uint64_t NextFilledKey(const Mesh& mesh) {
+  uint64_t next = kFilledKeyBit;
+  for (const uint64_t key : mesh.key) {
+    if ((key & kFilledKeyBit) != 0) next = std::max(next, (key | (2 * kFilledKeyBit - 1)) + 1 + kFilledKeyBit);
+  }
+  return next;
+}
+
 double CloseHoles(std::vector<Hole> holes, const std::vector<EdgeUse>& uses, double spacing_m, const IsOpenThere& is_open, Mesh* mesh) {
   if (holes.empty()) return 0.0;
   HoleBlocker(*mesh, &holes).Run();
-  uint64_t next_key = kFilledKeyBit;
-  for (const uint64_t key : mesh->key) {
-    if ((key & kFilledKeyBit) != 0) next_key = std::max(next_key, (key | (2 * kFilledKeyBit - 1)) + 1 + kFilledKeyBit);
-  }
+  uint64_t next_key = NextFilledKey(*mesh);
   double area = 0.0;
   for (const Hole& hole : holes) {
     if (hole.blocked) continue;

@@ -23,6 +23,8 @@ void DropUnusedVertices(Mesh* mesh);
 int DropIslands(Mesh* mesh, double min_area_m2);
 // Set in the keys of vertices that close holes: a bit between sheet and cell, which VertexKey never sets.
 inline constexpr uint64_t kFilledKeyBit = uint64_t{1} << 5U;
+// The first free one of these keys; 2 * kFilledKeyBit leads from one to the next.
+uint64_t NextFilledKey(const Mesh& mesh);
 
 // Closes holes in the ground: open borders of at most 2000 edges that
 //   - run around free space as seen from above, with an area there of at most max_area_m2, and do not cross or touch themselves or another border;

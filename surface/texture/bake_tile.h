@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "core/survey/photo_pictures.h"
 #include "surface/surface_input.h"
 #include "surface/texture/texture_baker.h"
 
@@ -11,9 +12,9 @@ namespace skyquilt::surface {
 // The pointers must outlive it.
 struct BakeSource {
   RayCaster caster;
-  double voxel_m = 0.0;                       // of the fused surface
-  const survey::Survey* survey = nullptr;     // needed for photos
-  const image::PixelCache* photos = nullptr;  // null: no detail
+  double voxel_m = 0.0;                     // of the fused surface
+  const survey::Survey* survey = nullptr;   // needed for photos
+  survey::PhotoPictures* photos = nullptr;  // of about a pixel per texel; null: all colours are the field's
 };
 
 // Colours are what the field shows from 4 voxels before the mesh to 6 behind it, and by the tile's error more on both sides. A texel counts as seen

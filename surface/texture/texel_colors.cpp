@@ -15,9 +15,9 @@ constexpr float kLeastOpacity = 0.05F;
 }  // namespace
 
 render::Ray RayToTexel(const Eigen::Vector3d& x_in_enu, const Eigen::Vector3d& normal, const Eigen::Vector3d* camera_enu, const RayWindow& window,
-                       double texel_m) {
+                       float width_m) {
   render::Ray ray;
-  ray.pixel_width = static_cast<float>(texel_m);
+  ray.pixel_width = width_m;
   if (camera_enu) {
     const Eigen::Vector3d way = x_in_enu - *camera_enu;
     const double distance = way.norm();
@@ -35,11 +35,11 @@ render::Ray RayToTexel(const Eigen::Vector3d& x_in_enu, const Eigen::Vector3d& n
   return ray;
 }
 
-TexelColors RenderTexels(const TileGeometry& geometry, const AtlasTexels& texels, std::span<const int32_t> view, std::span<const DepthView> views,
-                         const RayCaster& caster, const RayWindow& window, double texel_m, base::ThreadPool& threads) {
+TexelColors RenderTexels(const TileGeometry& geometry, const AtlasTexels& texels, std::span<const TexelRay> wanted, std::span<const DepthView> views,
+                         const RayCaster& caster, const RayWindow& window, base::ThreadPool& threads) {
   std::vector<Eigen::Vector3d> camera;
   for (const DepthView& v : views) camera.push_back(v.pose.Centre());
-  const size_t n = texels.texel.size();
+  const size_t n = wanted.size();
   TexelColors colors;
   colors.rgb_srgb.resize(n);
   colors.known.assign(n, 0);
@@ -53,9 +53,11 @@ TexelColors RenderTexels(const TileGeometry& geometry, const AtlasTexels& texels
     threads.ParallelFor(static_cast<int64_t>((count + kRaysPerTask - 1) / kRaysPerTask), [&](int64_t task, int) {
       const size_t begin = static_cast<size_t>(task) * kRaysPerTask;
       for (size_t k = begin; k < std::min(count, begin + kRaysPerTask); ++k) {
-        const size_t i = first + k;
-        const Eigen::Vector3d* from = view[i] >= 0 ? &camera[static_cast<size_t>(view[i])] : nullptr;
-        rays[k] = RayToTexel(texels.PositionOf(geometry, i), texels.NormalOf(geometry, i), from, window, texel_m);
+        const TexelRay& ray = wanted[first + k];
+        const double wider = geometry.IsFilled(texels.texel[ray.texel].triangle) ? kFilledTolerance : 1.0;
+        const RayWindow around{wider * window.before_m, wider * window.behind_m};
+        const Eigen::Vector3d* from = ray.view >= 0 ? &camera[static_cast<size_t>(ray.view)] : nullptr;
+        rays[k] = RayToTexel(texels.PositionOf(geometry, ray.texel), texels.NormalOf(geometry, ray.texel), from, around, ray.width_m);
       }
     });
     caster(rays, seen);

@@ -21,10 +21,17 @@ struct RayWindow {
 
 // The ray to a place on the mesh from its view's camera, or against the normal when there is none or it sees the place at too flat an angle.
 render::Ray RayToTexel(const Eigen::Vector3d& x_in_enu, const Eigen::Vector3d& normal, const Eigen::Vector3d* camera_enu, const RayWindow& window,
-                       double texel_m);
+                       float width_m);
 
-// One ray per texel, in batches. view: of ChooseViews. The colour is what the ray met, whatever its opacity above 0.05; below, it is unknown.
-TexelColors RenderTexels(const TileGeometry& geometry, const AtlasTexels& texels, std::span<const int32_t> view, std::span<const DepthView> views,
-                         const RayCaster& caster, const RayWindow& window, double texel_m, base::ThreadPool& threads);
+// A texel to be rendered.
+struct TexelRay {
+  uint32_t texel = 0;
+  int32_t view = -1;     // whose camera looks; -1: against the normal
+  float width_m = 0.0F;  // of the ray
+};
+
+// One colour per ray, in batches. The colour is what the ray met, whatever its opacity above 0.05; below, it is unknown.
+TexelColors RenderTexels(const TileGeometry& geometry, const AtlasTexels& texels, std::span<const TexelRay> wanted, std::span<const DepthView> views,
+                         const RayCaster& caster, const RayWindow& window, base::ThreadPool& threads);
 
 }  // namespace skyquilt::surface

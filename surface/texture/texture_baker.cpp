@@ -1,6 +1,9 @@
 #include "surface/texture/texture_baker.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "surface/texture/bake_tile.h"
 #include "surface/texture/view_choice.h"
@@ -26,17 +29,61 @@ BoundingBall BallOf(const Mesh& mesh) {
   return {0.5 * (low + high), 0.5 * (high - low).norm()};
 }
 
+constexpr double kMostPictureBytes = 1073741824.0, kShareForPictures = 0.125;
+
+// A photo with `scale` times the pixels that it was trained with along each axis, but never enlarged.
+survey::PhotoPicture PictureAt(const SurfaceInput& input, size_t photo, double scale) {
+  const camera::Camera& camera = input.survey->cameras[static_cast<size_t>(input.survey->photos[photo].camera)];
+  const int trained = input.photos->Width(photo);
+  const int width = std::clamp(static_cast<int>(std::lround(scale * trained)), 1, camera.width);
+  if (width > trained) return survey::ReadPhotoPicture(*input.survey, photo, width);
+  image::PixelCache::Photo pixels = input.photos->Copy(photo);
+  survey::PhotoPicture picture;
+  picture.rgb = image::Image8(trained, input.photos->Height(photo), 3);
+  picture.rgb.data = std::move(pixels.rgb);
+  if (!pixels.mask.empty()) {
+    picture.mask = image::Image8(trained, input.photos->Height(photo), 1);
+    picture.mask.data = std::move(pixels.mask);
+  }
+  if (width < trained) {
+    const int height = image::ScaledHeight(camera.width, camera.height, width);
+    picture.rgb = image::Resize(picture.rgb, width, height);
+    if (!picture.mask.Empty()) picture.mask = image::ResizeMask(picture.mask, width, height);
+  }
+  picture.camera = camera.Resized(picture.rgb.width, picture.rgb.height);
+  return picture;
+}
+
 }  // namespace
 
 TextureBaker::TextureBaker(const SurfaceInput& input, const DepthViews& views, double voxel_m) : input_(input), views_(views), voxel_m_(voxel_m) {}
 
-BakedTile TextureBaker::Bake(const MeshTile& mesh, const BakeOptions& options, base::ThreadPool& threads) const {
+survey::PhotoPictures* TextureBaker::PhotosFor(double texel_m) {
+  if (input_.photos == nullptr || !input_.options.photo_texture) return nullptr;
+  if (photos_ && photo_texel_m_ == texel_m) return photos_.get();
+  failures_ = Failures();
+  photo_texel_m_ = texel_m;
+  const auto read = [&input = input_, scale = input_.info->gsd_m / texel_m](size_t photo) { return PictureAt(input, photo, scale); };
+  const double budget = std::min(kMostPictureBytes, kShareForPictures * input_.memory_bytes);
+  photos_ = std::make_unique<survey::PhotoPictures>(input_.survey->photos.size(), read, static_cast<size_t>(budget));
+  return photos_.get();
+}
+
+std::set<std::string> TextureBaker::Failures() const {
+  std::set<std::string> all = failures_;
+  if (photos_) {
+    for (const std::string& failure : photos_->Failures()) all.insert(failure);
+  }
+  return all;
+}
+
+BakedTile TextureBaker::Bake(const MeshTile& mesh, const BakeOptions& options, base::ThreadPool& threads) {
   std::vector<DepthView> near;
   const BoundingBall ball = BallOf(mesh.mesh);
   for (size_t v = 0; v < views_.size() && ball.radius_m >= 0.0; ++v) {
     if (MayShow(views_.pose(v), ball.centre, ball.radius_m)) near.push_back(views_[v]);
   }
-  return BakeTile(mesh, near, {input_.caster, voxel_m_, input_.survey, input_.photos}, options, threads);
+  return BakeTile(mesh, near, {input_.caster, voxel_m_, input_.survey, PhotosFor(options.texel_m)}, options, threads);
 }
 
 }  // namespace skyquilt::surface

@@ -24,6 +24,8 @@ struct TileGeometry {
   std::vector<Eigen::Vector3d> vertex_normal;
   Eigen::Vector3d min_enu = Eigen::Vector3d::Zero(), max_enu = Eigen::Vector3d::Zero();  // of the usable triangles
 
+  // Whether the triangle closes a gap: it may be further off than the measured surface.
+  bool IsFilled(size_t t) const { return mesh->filled[triangle[t][0]] + mesh->filled[triangle[t][1]] + mesh->filled[triangle[t][2]] > 0; }
   const Eigen::Vector3d& Corner(size_t t, size_t corner) const { return mesh->position[triangle[t][corner]]; }
   // By the barycentric weights of the second and third corner.
   Eigen::Vector3d PositionAt(size_t t, double b1, double b2) const {

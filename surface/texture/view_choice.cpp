@@ -10,15 +10,8 @@
 namespace skyquilt::surface {
 namespace {
 
-constexpr int kBlockTexels = 8;  // sides of the blocks that share a view
 constexpr size_t kTriedViews = 24;
 constexpr int64_t kBlocksPerTask = 64;
-
-// Texels of a block, and the one that stands for it.
-struct TexelBlock {
-  std::vector<size_t> texel;
-  size_t middle = 0;
-};
 
 std::vector<TexelBlock> BlocksOf(const AtlasLayout& layout, const AtlasTexels& texels) {
   std::vector<TexelBlock> blocks;
@@ -35,9 +28,9 @@ std::vector<TexelBlock> BlocksOf(const AtlasLayout& layout, const AtlasTexels& t
       const int distance = std::abs(2 * (x % kBlockTexels) + 1 - kBlockTexels) + std::abs(2 * (y % kBlockTexels) + 1 - kBlockTexels);
       if (grid[b].texel.empty() || distance < nearest[b]) {
         nearest[b] = distance;
-        grid[b].middle = i;
+        grid[b].middle = static_cast<uint32_t>(i);
       }
-      grid[b].texel.push_back(i);
+      grid[b].texel.push_back(static_cast<uint32_t>(i));
     }
     for (TexelBlock& block : grid) {
       if (!block.texel.empty()) blocks.push_back(std::move(block));
@@ -48,11 +41,11 @@ std::vector<TexelBlock> BlocksOf(const AtlasLayout& layout, const AtlasTexels& t
 
 class ViewChooser {
  public:
-  ViewChooser(std::span<const DepthView> views, double tolerance_m) : views_(views), tolerance_m_(tolerance_m) {
+  explicit ViewChooser(std::span<const DepthView> views) : views_(views) {
     for (const DepthView& view : views) centre_.push_back(view.pose.Centre());
   }
 
-  int32_t Best(const Eigen::Vector3d& x, const Eigen::Vector3d& normal) const {
+  std::array<int32_t, kKeptViews> Best(const Eigen::Vector3d& x, const Eigen::Vector3d& normal, double tolerance_m) const {
     std::vector<std::pair<double, int32_t>> photos;  // score, view
     std::vector<std::pair<double, int32_t>> virtuals;
     for (size_t v = 0; v < views_.size(); ++v) {
@@ -63,24 +56,27 @@ class ViewChooser {
       if (!views_[v].pose.Project(x)) continue;
       (views_[v].pose.photo >= 0 ? photos : virtuals).emplace_back(along / distance2, static_cast<int32_t>(v));
     }
-    const int32_t photo = BestSeeing(photos, x);
-    return photo >= 0 ? photo : BestSeeing(virtuals, x);
+    std::array<int32_t, kKeptViews> best;
+    best.fill(-1);
+    if (FindSeeing(photos, x, tolerance_m, best) == 0) FindSeeing(virtuals, x, tolerance_m, std::span(best).first(1));
+    return best;
   }
 
  private:
-  int32_t BestSeeing(std::vector<std::pair<double, int32_t>>& candidates, const Eigen::Vector3d& x) const {
+  size_t FindSeeing(std::vector<std::pair<double, int32_t>>& candidates, const Eigen::Vector3d& x, double tolerance_m,
+                    std::span<int32_t> best) const {
     const size_t n = std::min(candidates.size(), kTriedViews);
     std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(n), candidates.end(),
                       [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
-    for (size_t i = 0; i < n; ++i) {
-      if (Sees(views_[static_cast<size_t>(candidates[i].second)], x, tolerance_m_)) return candidates[i].second;
+    size_t found = 0;
+    for (size_t i = 0; i < n && found < best.size(); ++i) {
+      if (Sees(views_[static_cast<size_t>(candidates[i].second)], x, tolerance_m)) best[found++] = candidates[i].second;
     }
-    return -1;
+    return found;
   }
 
   std::span<const DepthView> views_;
   std::vector<Eigen::Vector3d> centre_;
-  double tolerance_m_;
 };
 
 }  // namespace
@@ -104,21 +100,33 @@ bool Sees(const DepthView& view, const Eigen::Vector3d& x_in_enu, double toleran
   return std::abs(static_cast<double>(view.depth_m[i]) - distance) < tolerance_m;
 }
 
-std::vector<int32_t> ChooseViews(const TileGeometry& geometry, const AtlasLayout& layout, const AtlasTexels& texels, std::span<const DepthView> views,
-                                 double tolerance_m, base::ThreadPool& threads) {
-  std::vector<int32_t> chosen(texels.texel.size(), -1);
-  const std::vector<TexelBlock> blocks = BlocksOf(layout, texels);
-  const ViewChooser chooser(views, tolerance_m);
+bool SeesClearly(const DepthView& view, const Eigen::Vector3d& x_in_enu, double tolerance_m) {
+  if (!Sees(view, x_in_enu, tolerance_m)) return false;
+  const Eigen::Vector2i pixel = view.pose.Project(x_in_enu)->cast<int>();
+  const double nearest = (view.pose.cam_from_enu * x_in_enu).norm() - tolerance_m;
+  for (int y = std::max(pixel.y() - 1, 0); y <= std::min(pixel.y() + 1, view.pose.height - 1); ++y) {
+    for (int x = std::max(pixel.x() - 1, 0); x <= std::min(pixel.x() + 1, view.pose.width - 1); ++x) {
+      const size_t i = static_cast<size_t>(y) * static_cast<size_t>(view.pose.width) + static_cast<size_t>(x);
+      if (static_cast<double>(view.depth_m[i]) < nearest) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<TexelBlock> ChooseViews(const TileGeometry& geometry, const AtlasLayout& layout, const AtlasTexels& texels,
+                                    std::span<const DepthView> views, double tolerance_m, base::ThreadPool& threads) {
+  std::vector<TexelBlock> blocks = BlocksOf(layout, texels);
+  const ViewChooser chooser(views);
   const auto n_blocks = static_cast<int64_t>(blocks.size());
   threads.ParallelFor((n_blocks + kBlocksPerTask - 1) / kBlocksPerTask, [&](int64_t task, int) {
     base::ThrowIfCancelled();
     for (int64_t b = task * kBlocksPerTask; b < std::min(n_blocks, (task + 1) * kBlocksPerTask); ++b) {
-      const TexelBlock& block = blocks[static_cast<size_t>(b)];
-      const int32_t best = chooser.Best(texels.PositionOf(geometry, block.middle), texels.NormalOf(geometry, block.middle));
-      for (const size_t i : block.texel) chosen[i] = best;
+      TexelBlock& block = blocks[static_cast<size_t>(b)];
+      const double tolerance = tolerance_m * (geometry.IsFilled(texels.texel[block.middle].triangle) ? kFilledTolerance : 1.0);
+      block.view = chooser.Best(texels.PositionOf(geometry, block.middle), texels.NormalOf(geometry, block.middle), tolerance);
     }
   });
-  return chosen;
+  return blocks;
 }
 
 }  // namespace skyquilt::surface

@@ -11,7 +11,7 @@ from harness import arrays_of, copied, expect, main, prepare_small, small_projec
 
 TRAIN = ["--steps", "150", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096"]
 # Coarse, but with every step that reads photos or looks from their places.
-SURFACE = [word for option in ("voxel_gsd=3", "view_gsd=4", "texel_gsd=4", "photo_detail=1", "obj=false", "tiles=false", "maps=false")
+SURFACE = [word for option in ("voxel_gsd=3", "view_gsd=4", "texel_gsd=4", "obj=false", "tiles=false", "maps=false")
            for word in ("--set", f"surface.{option}")]
 EVERY = 8  # the default of --holdout: photo i in name order with i % 8 == 0
 MOVED_M, TURNED_DEG = (6.0, -4.0, 9.0), 12.0

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "evaluate/surface/photo_errors.h"
@@ -89,6 +90,21 @@ TEST_F(CompareSurfacesTest, WhatIsMissingLowersRecallOnly) {
   EXPECT_EQ(ClassOf(half, "roof").f_scores[1].recall, 0.0);
   EXPECT_TRUE(std::isnan(ClassOf(half, "roof").f_scores[1].precision));  // no mesh is nearest to the roof
   EXPECT_TRUE(std::isinf(ClassOf(half, "roof").completeness_median_m));
+}
+
+// It is shown, but nobody measured it: it is neither right nor wrong, and what it covers is missing.
+TEST_F(CompareSurfacesTest, WhatClosesGapsIsNotScored) {
+  SurfaceMesh mesh = MeshOf({kGround, kRoad, kRoof, Moved(kGround, 2.0)});
+  mesh.filled.assign(mesh.triangle.size(), 0);
+  const size_t per_plate = mesh.triangle.size() / 4;
+  std::fill_n(mesh.filled.begin() + static_cast<std::ptrdiff_t>(3 * per_plate), per_plate, 1);
+  EXPECT_EQ(FScores(Compare(mesh).all), std::vector<double>(6, 1.0));
+  std::fill_n(mesh.filled.begin() + static_cast<std::ptrdiff_t>(2 * per_plate), per_plate, 1);
+  const SurfaceComparison half = Compare(mesh);
+  EXPECT_EQ(half.all.f_scores[0].precision, 1.0);
+  EXPECT_NEAR(half.all.f_scores[0].recall, 0.5, 0.05);
+  std::fill(mesh.filled.begin(), mesh.filled.end(), 1);
+  EXPECT_EQ(Compare(mesh).all.mesh_samples, 0);
 }
 
 TEST_F(CompareSurfacesTest, EveryClassHasItsOwnScores) {

@@ -16,7 +16,7 @@ using testing::HeightField;
 using testing::PoseAt;
 using testing::ViewOf;
 
-// Views chosen for a level square of 4 x 4 m.
+// The best view of each texel of a level square of 4 x 4 m.
 class PlaneViews {
  public:
   PlaneViews()
@@ -26,7 +26,13 @@ class PlaneViews {
     std::vector<DepthView> views;
     for (const FilledView& view : filled) views.push_back(view.Get());
     base::ThreadPool threads(n_threads);
-    return ChooseViews(geometry_, layout_, FindTexels(geometry_, layout_, threads), views, 0.3, threads);
+    const AtlasTexels texels = FindTexels(geometry_, layout_, threads);
+    std::vector<int32_t> best(texels.texel.size(), -2);
+    for (const TexelBlock& block : ChooseViews(geometry_, layout_, texels, views, 0.3, threads)) {
+      for (const uint32_t i : block.texel) best[i] = block.view[0];
+    }
+    EXPECT_EQ(std::count(best.begin(), best.end(), -2), 0);
+    return best;
   }
 
  private:
@@ -124,14 +130,14 @@ TEST(ViewChoice, BallsBehindTheCameraOrBesideThePictureAreLeftOut) {
 
 TEST(TexelRay, StartsAtTheCameraAndEndsBehindTheMesh) {
   const Eigen::Vector3d camera(3, 0, 4);
-  const render::Ray ray = RayToTexel({0, 0, 0}, Eigen::Vector3d::UnitZ(), &camera, {0.4, 0.6}, 0.1);
+  const render::Ray ray = RayToTexel({0, 0, 0}, Eigen::Vector3d::UnitZ(), &camera, {0.4, 0.6}, 0.1F);
   EXPECT_EQ(ray.origin_enu, camera);
   EXPECT_LT((ray.direction_enu - Eigen::Vector3d(-0.6, 0, -0.8)).norm(), 1e-12);
   EXPECT_NEAR(ray.t_near, 4.6, 1e-12);
   EXPECT_NEAR(ray.t_far, 5.6, 1e-12);
   EXPECT_FLOAT_EQ(static_cast<float>(ray.Footprint(5.0)), 0.1F);
   const Eigen::Vector3d close(0, 0, 0.1);
-  EXPECT_EQ(RayToTexel({0, 0, 0}, Eigen::Vector3d::UnitZ(), &close, {0.4, 0.6}, 0.1).t_near, 0.0);
+  EXPECT_EQ(RayToTexel({0, 0, 0}, Eigen::Vector3d::UnitZ(), &close, {0.4, 0.6}, 0.1F).t_near, 0.0);
 }
 
 TEST(TexelRay, FollowsTheNormalWithoutACameraOrAtTooFlatAnAngle) {
@@ -139,7 +145,7 @@ TEST(TexelRay, FollowsTheNormalWithoutACameraOrAtTooFlatAnAngle) {
   const Eigen::Vector3d behind(0, 0, -5);
   const Eigen::Vector3d same(1, 2, 3);
   for (const Eigen::Vector3d* camera : {static_cast<const Eigen::Vector3d*>(nullptr), &flat, &behind, &same}) {
-    const render::Ray ray = RayToTexel(same, Eigen::Vector3d::UnitZ(), camera, {0.4, 0.6}, 0.1);
+    const render::Ray ray = RayToTexel(same, Eigen::Vector3d::UnitZ(), camera, {0.4, 0.6}, 0.1F);
     EXPECT_LT((ray.origin_enu - Eigen::Vector3d(1, 2, 3.4)).norm(), 1e-12);
     EXPECT_EQ(ray.direction_enu, Eigen::Vector3d(0, 0, -1));
     EXPECT_EQ(ray.t_near, 0.0);

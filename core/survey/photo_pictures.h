@@ -1,17 +1,19 @@
-// Pictures of a survey's photos at the detail that a map needs, read when they are asked for and kept while memory allows.
+// Photos of a survey as pictures of the detail that a product needs, read when they are asked for and kept while memory allows.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/image/image.h"
 #include "core/survey/survey.h"
 
-namespace skyquilt::products {
+namespace skyquilt::survey {
 
 struct PhotoPicture {
   image::Image8 rgb;
@@ -21,16 +23,16 @@ struct PhotoPicture {
   size_t Bytes() const { return rgb.data.size() + mask.data.size(); }
 };
 
-// The photo reduced to about pixels_per_cell pixels per cell of cell_m metres on the ground at ground_z, never enlarged. Throws base::InputError when
-// it cannot be read or does not have the size that it had when the survey was prepared.
-PhotoPicture ReadPhotoPicture(const survey::Survey& survey, size_t photo, double ground_z, double cell_m, double pixels_per_cell);
+// The photo with `width` pixels across, but never enlarged. Throws base::InputError when it cannot be read or does not have the size that it had
+// when the survey was prepared.
+PhotoPicture ReadPhotoPicture(const Survey& survey, size_t photo, int width);
 
 // Thread-safe. Several threads may read different photos at the same time; one photo is read by one of them.
 class PhotoPictures {
  public:
-  // Keeps a reference to the survey. Pictures that were not used for longest go when those kept have more than `budget` bytes; what a caller still
-  // holds counts no more.
-  PhotoPictures(const survey::Survey& survey, double ground_z, double cell_m, double pixels_per_cell, size_t budget);
+  // read: gives the picture of a photo, or throws base::InputError. Pictures that were not used for longest go when those kept have more than
+  // `budget` bytes; what a caller still holds counts no more.
+  PhotoPictures(size_t photos, std::function<PhotoPicture(size_t photo)> read, size_t budget);
 
   // Null when the photo cannot be read, now and from then on.
   std::shared_ptr<const PhotoPicture> Of(size_t photo);
@@ -44,8 +46,7 @@ class PhotoPictures {
     std::string failure;
     std::list<size_t>::iterator place;  // in recent_, with a picture
   };
-  const survey::Survey& survey_;
-  double ground_z_, cell_m_, pixels_per_cell_;
+  std::function<PhotoPicture(size_t)> read_;
   size_t budget_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<Entry>> entries_;
@@ -53,4 +54,7 @@ class PhotoPictures {
   size_t bytes_ = 0;
 };
 
-}  // namespace skyquilt::products
+// Logs a warning that a product does without photos that could not be read, the first three by name; nothing without failures. of: photos in all.
+void WarnOfUnreadPhotos(std::string_view product, const std::vector<std::string>& failures, size_t of);
+
+}  // namespace skyquilt::survey

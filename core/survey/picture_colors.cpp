@@ -1,4 +1,4 @@
-#include "products/photo_map/picture_colors.h"
+#include "core/survey/picture_colors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "core/image/srgb.h"
 
-namespace skyquilt::products {
+namespace skyquilt::survey {
 namespace {
 
 constexpr int kSteps = 2048;
@@ -119,4 +119,4 @@ std::array<float, 3> InLight(const std::array<float, 3>& display, const std::arr
   return result;
 }
 
-}  // namespace skyquilt::products
+}  // namespace skyquilt::survey

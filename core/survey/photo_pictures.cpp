@@ -1,14 +1,22 @@
-#include "products/photo_map/photo_pictures.h"
+#include "core/survey/photo_pictures.h"
 
 #include <algorithm>
-#include <cmath>
+#include <span>
+#include <utility>
 
 #include "core/base/errors.h"
+#include "core/base/log.h"
+#include "core/base/text.h"
 
-namespace skyquilt::products {
+namespace skyquilt::survey {
+namespace {
 
-PhotoPicture ReadPhotoPicture(const survey::Survey& survey, size_t photo, double ground_z, double cell_m, double pixels_per_cell) {
-  const survey::Photo& source = survey.photos[photo];
+constexpr size_t kNamedFailures = 3;
+
+}  // namespace
+
+PhotoPicture ReadPhotoPicture(const Survey& survey, size_t photo, int width) {
+  const Photo& source = survey.photos[photo];
   const camera::Camera& camera = survey.cameras[static_cast<size_t>(source.camera)];
   const std::filesystem::path file = survey.photo_root / source.name;
   int stored_width = 0, stored_height = 0;
@@ -19,8 +27,7 @@ PhotoPicture ReadPhotoPicture(const survey::Survey& survey, size_t photo, double
                                std::to_string(camera.width) + " x " + std::to_string(camera.height) + " when the survey was prepared",
                            "Put the photo back that was used then, or prepare the survey again");
   }
-  const double gsd_m = camera::GroundSamplingDistance(camera, std::max(source.cam_from_enu.OriginInSource().z() - ground_z, 1e-6));
-  const int width = std::max(1, static_cast<int>(std::min<double>(camera.width, std::ceil(pixels_per_cell * camera.width * gsd_m / cell_m))));
+  width = std::clamp(width, 1, camera.width);
   PhotoPicture picture;
   picture.rgb = image::LoadReducedRgb8(file, width);
   if (picture.rgb.width > width) picture.rgb = image::Resize(picture.rgb, width, image::ScaledHeight(camera.width, camera.height, width));
@@ -29,10 +36,9 @@ PhotoPicture ReadPhotoPicture(const survey::Survey& survey, size_t photo, double
   return picture;
 }
 
-PhotoPictures::PhotoPictures(const survey::Survey& survey, double ground_z, double cell_m, double pixels_per_cell, size_t budget)
-    : survey_(survey), ground_z_(ground_z), cell_m_(cell_m), pixels_per_cell_(pixels_per_cell), budget_(budget) {
-  entries_.reserve(survey.photos.size());
-  for (size_t i = 0; i < survey.photos.size(); ++i) entries_.push_back(std::make_unique<Entry>());
+PhotoPictures::PhotoPictures(size_t photos, std::function<PhotoPicture(size_t)> read, size_t budget) : read_(std::move(read)), budget_(budget) {
+  entries_.reserve(photos);
+  for (size_t i = 0; i < photos; ++i) entries_.push_back(std::make_unique<Entry>());
 }
 
 std::shared_ptr<const PhotoPicture> PhotoPictures::Of(size_t photo) {
@@ -49,7 +55,7 @@ std::shared_ptr<const PhotoPicture> PhotoPictures::Of(size_t photo) {
   std::shared_ptr<const PhotoPicture> read;
   std::string failure;
   try {
-    read = std::make_shared<const PhotoPicture>(ReadPhotoPicture(survey_, photo, ground_z_, cell_m_, pixels_per_cell_));
+    read = std::make_shared<const PhotoPicture>(read_(photo));
   } catch (const base::InputError& error) {
     failure = error.what();
   }
@@ -80,4 +86,11 @@ std::vector<std::string> PhotoPictures::Failures() const {
   return failures;
 }
 
-}  // namespace skyquilt::products
+void WarnOfUnreadPhotos(std::string_view product, const std::vector<std::string>& failures, size_t of) {
+  if (failures.empty()) return;
+  const size_t named = std::min(failures.size(), kNamedFailures);
+  base::LogWarning("{} does without {} of {} photos, which cannot be read:\n  {}{}", product, failures.size(), of,
+                   base::Join(std::span(failures).first(named), "\n  "), named < failures.size() ? "\n  ..." : "");
+}
+
+}  // namespace skyquilt::survey

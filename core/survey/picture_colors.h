@@ -1,4 +1,4 @@
-// Colours of photos at places of a map, in the map's light.
+// Colours of photos at places of the survey, and in another light.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "products/photo_map/photo_light.h"
-#include "products/photo_map/photo_pictures.h"
+#include "core/survey/photo_pictures.h"
 
-namespace skyquilt::products {
+namespace skyquilt::survey {
 
 // Display values of 0..1 and linear light of 0..4 (more is cut) from tables, to about 1e-4.
 float QuickLight(float display);
@@ -28,4 +27,4 @@ std::array<float, 3> LanczosAt(const PhotoPicture& picture, const Eigen::Vector2
 // The same in another light: factors on linear light.
 std::array<float, 3> InLight(const std::array<float, 3>& display, const std::array<float, 3>& factors);
 
-}  // namespace skyquilt::products
+}  // namespace skyquilt::survey

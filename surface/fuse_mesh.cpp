@@ -179,7 +179,7 @@ std::vector<MeshTile> FuseWithinMemory(const SurfaceInput& input, const DepthVie
 struct Coarseness {
   double pixels = 1.0, voxels = 1.0;
 };
-constexpr std::array<Coarseness, 2> kCoarseMeshes{{{3.0, 4.0}, {6.0, 12.0}}};
+constexpr std::array<Coarseness, 2> kCoarseMeshes{{{3.0, 4.0}, {3.0, 12.0}}};
 constexpr double kTracedBytes = 150.0;  // of a triangle that rays are traced against
 
 // What the scene shows without its detail, fused from smaller pictures of depth in larger voxels: there photos agree where they do not in every

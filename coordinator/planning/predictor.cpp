@@ -24,7 +24,8 @@ constexpr double kFineMapRays = 0.5;                                   // of the
 constexpr double kPixelsPerTrustRay = 16.0, kMostTrustTiles = 1500.0;  // as in evaluate/trust/measure_trust.cpp
 constexpr double kTexelLevels = 4.0 / 3.0;                             // coarser tiles have a quarter of the texels each
 constexpr double kPhotoTexels = 0.5;                                   // time of a texel from photos, in texels from the field
-constexpr double kCoarseViews = 0.14;      // pixels of coarse pictures of depth, in pixels of the fine ones (surface/fuse_mesh.h)
+constexpr double kCoarseViews = 0.28;      // pixels of coarse pictures of depth with their virtual ones, in those of photos (surface/fuse_mesh.cpp)
+constexpr double kFilledMesh = 1.3;        // time of fusion with the coarse meshes, in that without
 constexpr double kWallShare = 1.3;         // surface per ground
 constexpr double kRefinedWidth = 640.0;    // pixels across a picture of depth whose depths photos improve
 constexpr double kMatchedPixels = 0.13e6;  // of pictures of depth, compared with photos, per second and thread
@@ -130,13 +131,14 @@ double Predictor::SurfaceSeconds(const Settings& settings) const {
   const double of_photos = size_.TrainingPhotos() * size_.PixelsAt(settings.run.image_width) / std::max(1.0, Squared(options.view_gsd));
   // Only pictures of depth that are wide enough are improved (surface/views/render_depth_views.cpp).
   const bool refined = options.refine && std::sqrt(4.0 / 3.0 * size_.PixelsAt(settings.run.image_width)) >= kRefinedWidth * options.view_gsd;
-  const double views = of_photos * (options.virtual_views ? 2.0 : 1.0);
-  const double coarse = options.fill_gaps && !size_.level ? kCoarseViews : 0.0;
+  const double views = of_photos * (options.virtual_views ? (refined ? 1.25 : 2.0) : 1.0);
+  const bool filled = options.fill_gaps && !size_.level;
   const double texels = detail / Squared(options.texel_gsd) * (options.tiles ? kTexelLevels : 1.0) * (options.photo_texture ? kPhotoTexels : 1.0);
   const double fusion = views / std::max(1.0, rates_.fused_pixels) + detail / Squared(options.voxel_gsd) / (kMeshCells * size_.threads);
   const double matching = refined ? of_photos / (kMatchedPixels * size_.threads) : 0.0;
-  return kStageStart_s + RaySeconds((1.0 + coarse) * views) + matching + texels / (std::max(1.0, rates_.texels) * size_.Speedup()) +
-         (size_.level ? kLevelMesh : 1.0) * fusion;
+  const double slower = size_.level ? kLevelMesh : filled ? kFilledMesh : 1.0;
+  return kStageStart_s + RaySeconds(views + (filled ? kCoarseViews * of_photos : 0.0)) + matching +
+         texels / (std::max(1.0, rates_.texels) * size_.Speedup()) + slower * fusion;
 }
 
 double Predictor::MasksSeconds(const Settings& settings) const {

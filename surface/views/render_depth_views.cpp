@@ -23,8 +23,8 @@
 namespace skyquilt::surface {
 namespace {
 
-constexpr double kCoarseBytes = 64e6;  // of the pictures that are kept for the search for gaps
-constexpr double kVirtualShare = 1.0;  // rays of virtual views, in rays of photo views
+constexpr double kCoarseBytes = 64e6;                                // of the pictures that are kept for the search for gaps
+constexpr double kVirtualShare = 1.0, kVirtualShareImproved = 0.25;  // rays of virtual views, in rays of photo views
 // Pixels across a picture of depth: in smaller ones, what is compared around a pixel is as large as a house.
 constexpr double kLeastImprovedWidth = 640.0;
 // Of virtual views beside improved ones: where photos agree on the surface, they must not blur it.
@@ -173,7 +173,7 @@ DepthViews RenderDepthViews(const SurfaceInput& input, double voxel_m, base::Thr
   if (input.options.virtual_views) {
     CoarseDepths coarse(RaysOf(places.training), kCoarseBytes);
     for (size_t i = 0; i < files.size(); ++i) coarse.Add(RequireView(files[i], renderer.poses()[i], key).Get());
-    const auto budget = static_cast<int64_t>(kVirtualShare * static_cast<double>(RaysOf(places.training)));
+    const auto budget = static_cast<int64_t>((improved ? kVirtualShareImproved : kVirtualShare) * static_cast<double>(RaysOf(places.training)));
     const GapOptions gaps{voxel_m, input.options.min_views, places.agl_m, budget, level};
     renderer.SetWeight(improved ? kVirtualWeight : kFullWeight);
     renderer.Make(PlanGapViews(coarse, gaps, threads), "surface views of gaps");

@@ -12,6 +12,7 @@
 #include "core/raytrace/traced_scene.h"
 #include "surface/mesh/mesh_tools.h"
 #include "surface/mesh/vectors.h"
+#include "surface/texture/tile_geometry.h"
 
 namespace skyquilt::surface {
 namespace {
@@ -143,16 +144,11 @@ class SurfaceCells {
 
 // Moves vertices that are near the mesh back behind it.
 void SinkRim(const Mesh& mesh, double voxel_m, Mesh* part) {
-  std::vector<Eigen::Vector3d> normal(part->position.size(), Eigen::Vector3d::Zero());
-  for (const Triangle& t : part->triangle) {
-    const Eigen::Vector3d of_triangle = DoubleAreaNormal(part->position[t[0]], part->position[t[1]], part->position[t[2]]);
-    for (const uint32_t v : t) normal[v] += of_triangle;
-  }
+  const std::vector<Eigen::Vector3d> normal = GeometryOf(*part).vertex_normal;
   SurfaceCells cells(part->position, kNearVoxels * voxel_m);
   cells.Mark(mesh);
   for (size_t v = 0; v < normal.size(); ++v) {
-    const double length = normal[v].norm();
-    if (length > 0.0 && cells.IsNear(part->position[v])) part->position[v] -= kSinkVoxels * voxel_m / length * normal[v];
+    if (cells.IsNear(part->position[v])) part->position[v] -= kSinkVoxels * voxel_m * normal[v];
   }
 }
 

@@ -147,6 +147,25 @@ PhotoTexture TexturePhotos::Colors(base::ThreadPool& threads) const {
   return texture;
 }
 
+std::vector<std::optional<Color>> TexturePhotos::ColorsAgreeing(int32_t view, std::span<const uint32_t> cell, const Color& gain,
+                                                                const Color& field_srgb) const {
+  const ViewPicture picture = PictureOf(view);
+  if (!picture.picture) return {};
+  std::vector<std::optional<Color>> colors;
+  Color light{};
+  float seen = 0.0F;
+  for (const uint32_t i : cell) {
+    const std::optional<Color>& color = colors.emplace_back(ColorAt(picture, i));
+    if (!color) continue;
+    for (size_t k = 0; k < 3; ++k) light[k] += survey::QuickLight((*color)[k]);
+    ++seen;
+  }
+  if (!(seen > 0.5F * static_cast<float>(cell.size()))) return {};
+  for (float& value : light) value /= seen;
+  if (SizeOf(DifferenceOf(light, gain, field_srgb)) > kStrangeDifference) return {};
+  return colors;
+}
+
 void TexturePhotos::ReplaceStrangers(base::ThreadPool& threads, PhotoTexture* texture, TexelColors* field) const {
   const std::vector<Color> gains = GainsOfViews(views_.size(), *texture, *field);
   std::vector<Color> difference(texture->cells.size());
@@ -193,21 +212,9 @@ void TexturePhotos::ReplaceStrangers(base::ThreadPool& threads, PhotoTexture* te
       for (const uint32_t i : members) view[i] = -1;
       for (size_t k = 0; k < kKeptViews && block.view[k] >= 0; ++k) {
         if (block.view[k] == texture->cells[static_cast<size_t>(c)].view) continue;
-        const ViewPicture picture = PictureOf(block.view[k]);
-        if (!picture.picture) continue;
-        std::vector<std::optional<Color>> colors;
-        Color light{};
-        float seen = 0.0F;
-        for (const uint32_t i : members) {
-          colors.push_back(ColorAt(picture, i));
-          if (!colors.back()) continue;
-          for (size_t channel = 0; channel < 3; ++channel) light[channel] += survey::QuickLight((*colors.back())[channel]);
-          ++seen;
-        }
-        if (!(seen > 0.5F * static_cast<float>(members.size()))) continue;
-        for (float& value : light) value /= seen;
-        const Color other = DifferenceOf(light, gains[static_cast<size_t>(block.view[k])], field->rgb_srgb[static_cast<size_t>(c)]);
-        if (SizeOf(other) > kStrangeDifference) continue;
+        const auto colors =
+            ColorsAgreeing(block.view[k], members, gains[static_cast<size_t>(block.view[k])], field->rgb_srgb[static_cast<size_t>(c)]);
+        if (colors.empty()) continue;
         for (size_t m = 0; m < members.size(); ++m) {
           if (!colors[m]) continue;
           texture->rgb_srgb[members[m]] = *colors[m];

@@ -60,6 +60,10 @@ class TexturePhotos {
   ViewPicture PictureOf(int32_t view) const;
   // Nothing when the view's photo does not show the texel.
   std::optional<std::array<float, 3>> ColorAt(const ViewPicture& picture, uint32_t texel) const;
+  // What the view's photo shows of a cell's texels, if it shows most of them and its mean, times the gain, is near the field's colour; otherwise
+  // empty.
+  std::vector<std::optional<std::array<float, 3>>> ColorsAgreeing(int32_t view, std::span<const uint32_t> cell, const std::array<float, 3>& gain,
+                                                                  const std::array<float, 3>& field_srgb) const;
 
   const TileGeometry& geometry_;
   const AtlasLayout& layout_;

@@ -163,7 +163,7 @@ void FieldTrainer::UpdateOccupancy(bool grow) {
   const int64_t budget = options_.batch_samples / 2;
   for (int64_t i = 0; i < budget; ++i) {
     const int64_t index = random.Below(static_cast<uint32_t>(grid.CellCount()));
-    if (grid.tau[static_cast<size_t>(index)] < 0.0F || grid.occupied[static_cast<size_t>(index)] != 0) continue;
+    if (grid.tau[static_cast<size_t>(index)] < 0.0F || grid.occupied[static_cast<size_t>(index)]) continue;
     const int64_t cell_x = index % grid.size[0], cell_y = index / grid.size[0] % grid.size[1], cell_z = index / grid.size[0] / grid.size[1];
     chosen.push_back(index);
     x.push_back((static_cast<float>(cell_x) + random.Uniform()) * grid.cell);

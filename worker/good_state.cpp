@@ -13,6 +13,10 @@ void CopyInto(const std::vector<T>& from, std::vector<T>& to) {
   std::copy(from.begin(), from.end(), to.begin());
 }
 
+void CopyInto(const std::vector<bool>& from, std::vector<bool>& to) {
+  to = from;
+}
+
 void CopyInto(const field::Parameters& from, field::Parameters& to) {
   CopyInto(from.grid, to.grid);
   CopyInto(from.networks, to.networks);

@@ -39,7 +39,8 @@ class GoodState {
   field::Parameters parameters_;
   field::OptimizerState optimizer_;
   std::vector<float> tau_;
-  std::vector<uint8_t> occupied_, judged_;
+  std::vector<bool> occupied_;
+  std::vector<uint8_t> judged_;
   int rays_per_step_ = 0;
   brightness::LuminanceState luminance_;
   SessionRecord kept_record_;

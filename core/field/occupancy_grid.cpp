@@ -12,7 +12,7 @@ OccupancyGrid OccupancyGrid::Make(const double extent[3], double wanted_cell, in
   for (int axis = 0; axis < 3; ++axis) grid.size[axis] = static_cast<int>(cells_along(axis));
   grid.cell = static_cast<float>(cell);
   grid.tau.assign(static_cast<size_t>(grid.CellCount()), 0.0F);
-  grid.occupied.assign(static_cast<size_t>(grid.CellCount()), 1);
+  grid.occupied.assign(static_cast<size_t>(grid.CellCount()), true);
   grid.judged.assign(static_cast<size_t>(grid.CellCount()), 0);
   return grid;
 }
@@ -53,7 +53,7 @@ double OccupancyGrid::UpdateOccupied(float limit) {
     }
   }
   const float threshold = std::min(limit, seen > 0 ? static_cast<float>(sum / static_cast<double>(seen)) : 0.0F);
-  for (size_t i = 0; i < tau.size(); ++i) occupied[i] = tau[i] > threshold ? 1 : 0;
+  for (size_t i = 0; i < tau.size(); ++i) occupied[i] = tau[i] > threshold;
   return OccupiedShare();
 }
 
@@ -61,38 +61,36 @@ void OccupancyGrid::MarkUnsampled(float start) {
   for (size_t i = 0; i < tau.size(); ++i) {
     if (tau[i] != start) continue;
     tau[i] = -1.0F;
-    occupied[i] = 0;
+    occupied[i] = false;
   }
 }
 
 double OccupancyGrid::OccupiedShare() const {
   if (occupied.empty()) return 0.0;
-  int64_t count = 0;
-  for (const uint8_t value : occupied) count += value;
-  return static_cast<double>(count) / static_cast<double>(occupied.size());
+  return static_cast<double>(std::count(occupied.begin(), occupied.end(), true)) / static_cast<double>(occupied.size());
 }
 
 void OccupancyGrid::Dilate(int cells) {
   // Dilation by a box is separable: one pass per axis.
-  std::vector<uint8_t> source = occupied;
+  std::vector<bool> source = occupied;
   const int64_t strides[3] = {1, size[0], static_cast<int64_t>(size[0]) * size[1]};
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<uint8_t> result(source.size(), 0);
+    std::vector<bool> result(source.size(), false);
     for (int z = 0; z < size[2]; ++z) {
       for (int y = 0; y < size[1]; ++y) {
         for (int x = 0; x < size[0]; ++x) {
           const int64_t index = Index(x, y, z);
-          if (source[static_cast<size_t>(index)] == 0) continue;
+          if (!source[static_cast<size_t>(index)]) continue;
           const int along = axis == 0 ? x : axis == 1 ? y : z;
           const int low = std::max(-cells, -along);
           const int high = std::min(cells, size[axis] - 1 - along);
-          for (int k = low; k <= high; ++k) result[static_cast<size_t>(index + k * strides[axis])] = 1;
+          for (int k = low; k <= high; ++k) result[static_cast<size_t>(index + k * strides[axis])] = true;
         }
       }
     }
     source = std::move(result);
   }
-  for (size_t i = 0; i < source.size(); ++i) occupied[i] = source[i] != 0 && tau[i] >= 0.0F ? 1 : 0;
+  for (size_t i = 0; i < source.size(); ++i) occupied[i] = source[i] && tau[i] >= 0.0F;
 }
 
 }  // namespace skyquilt::field

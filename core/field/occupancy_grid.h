@@ -13,11 +13,11 @@ struct OccupancyGrid {
   // Decay per sample: a few dozen empty samples free a cell, but one sample in ten on a thin surface keeps it occupied.
   static constexpr float kDecay = 0.9F;
 
-  int size[3] = {0, 0, 0};        // cells per axis
-  float cell = 1.0F;              // edge of a cell, unit lengths; the same on all axes
-  std::vector<float> tau;         // per cell: decaying maximum of the optical depth of a step; negative: no camera sees the cell
-  std::vector<uint8_t> occupied;  // 0 or 1 per cell
-  std::vector<uint8_t> judged;    // 0 or 1 per cell: whether a sample was in it that is not wider than the cell; empty in scenes
+  int size[3] = {0, 0, 0};      // cells per axis
+  float cell = 1.0F;            // edge of a cell, unit lengths; the same on all axes
+  std::vector<float> tau;       // per cell: decaying maximum of the optical depth of a step; negative: no camera sees the cell
+  std::vector<bool> occupied;   // per cell; one bit each, so that what rays look up at random stays in cache
+  std::vector<uint8_t> judged;  // 0 or 1 per cell: whether a sample was in it that is not wider than the cell; empty in scenes
 
   // Covers [0, extent] with cells of edge `wanted_cell`, or larger so that there are at most max_cells; all cells occupied.
   static OccupancyGrid Make(const double extent[3], double wanted_cell, int64_t max_cells);

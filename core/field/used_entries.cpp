@@ -16,8 +16,8 @@ std::vector<uint8_t> UsedEntries(const encoding::HashGrid& grid, const Occupancy
       // Neighbours in a row have most corners in common: use one box for all of them.
       for (int x = 0; x < occupancy.size[0]; ++index) {
         const int begin = x++;
-        if (occupancy.occupied[static_cast<size_t>(index)] == 0) continue;
-        for (; x < occupancy.size[0] && occupancy.occupied[static_cast<size_t>(index + 1)] != 0; ++x) ++index;
+        if (!occupancy.occupied[static_cast<size_t>(index)]) continue;
+        for (; x < occupancy.size[0] && occupancy.occupied[static_cast<size_t>(index + 1)]; ++x) ++index;
         const int low[3] = {begin, y, z}, high[3] = {x, y + 1, z + 1};
         float box_low[3], box_high[3];
         for (int axis = 0; axis < 3; ++axis) {

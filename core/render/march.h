@@ -82,7 +82,7 @@ void WalkCells(const TrainedField& f, const Eigen::Vector3d& origin, const Eigen
   while (at < length) {
     const int axis = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
     const double leave = std::max(at, std::min(next[axis], length));
-    if (grid.occupied[static_cast<size_t>(index)] != 0 && !visit(at, leave, index)) return;
+    if (grid.occupied[static_cast<size_t>(index)] && !visit(at, leave, index)) return;
     at = leave;
     cell[axis] += increment[axis];
     if (cell[axis] < 0 || cell[axis] >= grid.size[axis]) return;
@@ -143,7 +143,7 @@ void MarchContracted(const TrainedField& f, const Eigen::Vector3d& origin, const
     if (t < interval.t_far) {
       const Eigen::Vector3f x = f.map.UnitFromEnu(origin + t * direction);
       const int64_t cell = f.occupancy.IndexAt(x.x(), x.y(), x.z());
-      if (f.occupancy.occupied[static_cast<size_t>(cell)] != 0 && !emit(t, step, step_m, cell)) return;
+      if (f.occupancy.occupied[static_cast<size_t>(cell)] && !emit(t, step, step_m, cell)) return;
     }
     at += step;
   }
@@ -166,7 +166,7 @@ void MarchContractedRuns(const TrainedField& f, const Eigen::Vector3d& origin, c
     const double scale = f.map.LocalScale(origin + at * direction);
     const double step = std::min(f.step_m / scale, interval.t_far - at);
     const Eigen::Vector3f x = f.map.UnitFromEnu(origin + (at + 0.5 * step) * direction);
-    const bool occupied = f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(x.x(), x.y(), x.z()))] != 0;
+    const bool occupied = f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(x.x(), x.y(), x.z()))];
     if ((!occupied || unit_length + step * scale > step_m) && !flush()) return;
     if (occupied) {
       if (!(length > 0.0)) begin = at;

@@ -33,7 +33,7 @@ void PointEvaluator::PlacePoints(const TrainedField& f, std::span<const QueryPoi
   for (size_t i = 0; i < points.size(); ++i) {
     if (!(points[i].blend > 0.0) || !IsInside(f.map, points[i].x_in_enu)) continue;
     const Eigen::Vector3f p = f.map.UnitFromEnu(points[i].x_in_enu);
-    if (f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(p.x(), p.y(), p.z()))] == 0) continue;
+    if (!f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(p.x(), p.y(), p.z()))]) continue;
     inside_.push_back(i);
     unit_.push_back(p);
   }

@@ -50,18 +50,20 @@ void VisitNumbers(Field& f, BoxOf& box, const Visit& visit) {
   visit("step_m", f.step_m);
 }
 
-// One bit per cell, the first in the lowest bit.
-std::vector<uint8_t> PackBits(const std::vector<uint8_t>& flags) {
+// One bit per cell, the first in the lowest bit. Flags: a vector of bool, or of 0 and 1.
+template <typename Flags>
+std::vector<uint8_t> PackBits(const Flags& flags) {
   std::vector<uint8_t> bits((flags.size() + 7) / 8, 0);
   for (size_t i = 0; i < flags.size(); ++i) {
-    if (flags[i] != 0) bits[i / 8] = static_cast<uint8_t>(bits[i / 8] | 1U << i % 8);
+    if (static_cast<bool>(flags[i])) bits[i / 8] = static_cast<uint8_t>(bits[i / 8] | 1U << i % 8);
   }
   return bits;
 }
 
-std::vector<uint8_t> UnpackBits(const std::vector<uint8_t>& bits, size_t n) {
-  std::vector<uint8_t> flags(n, 0);
-  for (size_t i = 0; i < n && i / 8 < bits.size(); ++i) flags[i] = bits[i / 8] >> i % 8 & 1U;
+template <typename Flags>
+Flags UnpackBits(const std::vector<uint8_t>& bits, size_t n) {
+  Flags flags(n);
+  for (size_t i = 0; i < n && i / 8 < bits.size(); ++i) flags[i] = (bits[i / 8] >> i % 8 & 1U) != 0;
   return flags;
 }
 
@@ -70,6 +72,18 @@ std::vector<int64_t> StoredSize(const checkpoint::ArchiveReader& reader, const s
   if (reader.Has(prefix + "occupancy_size")) return reader.Ints(prefix + "occupancy_size");
   const std::vector<int64_t> shape = reader.Shape(prefix + "occupied");
   return {shape.rbegin(), shape.rend()};
+}
+
+// Which of `cells` cells of a field in a file are occupied; of another size where the file has another number. Checkpoints of older programs have a
+// byte per cell. Throws base::InputError as the reader does.
+std::vector<bool> StoredOccupied(const checkpoint::ArchiveReader& reader, const std::string& prefix, size_t cells) {
+  if (!reader.Has(prefix + "occupied_bits")) {
+    const std::vector<uint8_t> bytes = reader.Bytes(prefix + "occupied");
+    return {bytes.begin(), bytes.end()};
+  }
+  const std::vector<uint8_t> bits = reader.Bytes(prefix + "occupied_bits");
+  if (bits.size() != (cells + 7) / 8) return {};
+  return UnpackBits<std::vector<bool>>(bits, cells);
 }
 
 // False for a size that no grid can have.
@@ -108,9 +122,10 @@ void PutField(const render::TrainedField& f, const std::string& prefix, checkpoi
   PutDescription(f, prefix, writer);
   writer.Put(prefix + "grid", f.parameters.grid);
   writer.Put(prefix + "networks", f.parameters.networks);
-  const std::vector<int64_t> shape = {f.occupancy.size[2], f.occupancy.size[1], f.occupancy.size[0]};
-  writer.Put(prefix + "occupied", f.occupancy.occupied, shape);
-  writer.Put(prefix + "occupancy_tau", f.occupancy.tau, shape);
+  const auto& size = f.occupancy.size;
+  writer.PutOwned(prefix + "occupied_bits", PackBits(f.occupancy.occupied));
+  writer.PutOwned(prefix + "occupancy_size", std::vector<int64_t>(std::begin(size), std::end(size)));
+  writer.Put(prefix + "occupancy_tau", f.occupancy.tau, {size[2], size[1], size[0]});
   writer.PutOwned(prefix + "judged_bits", PackBits(f.occupancy.judged));
 }
 
@@ -120,8 +135,9 @@ void PutSceneField(const render::TrainedField& description, const std::filesyste
   const checkpoint::ArchiveReader reader(checkpoint);
   const std::vector<int64_t> size = StoredSize(reader, "");
   field::OccupancyGrid occupancy = description.occupancy;
-  occupancy.occupied = reader.Bytes("occupied");
-  if (!(occupancy.cell > 0.0F) || !SetSize(size, &occupancy) || occupancy.CellCount() != static_cast<int64_t>(occupancy.occupied.size()))
+  const bool fits = occupancy.cell > 0.0F && SetSize(size, &occupancy);
+  if (fits) occupancy.occupied = StoredOccupied(reader, "", static_cast<size_t>(occupancy.CellCount()));
+  if (!fits || occupancy.CellCount() != static_cast<int64_t>(occupancy.occupied.size()))
     throw base::InputError(checkpoint, "its occupancy grid has an impossible size", kFix);
   if (description.config.encoding == encoding::Kind::kHash) {
     if (reader.Shape("grid") != std::vector<int64_t>{encoding::HashGrid(description.config.grid).ParameterCount()}) {
@@ -208,17 +224,14 @@ render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std
   const std::vector<int64_t> size = StoredSize(reader, prefix);
   bool fits = SetSize(size, &f.occupancy);
   const auto cells = static_cast<size_t>(fits ? f.occupancy.CellCount() : 0);
-  if (reader.Has(prefix + "occupied_bits")) {
-    const std::vector<uint8_t> bits = reader.Bytes(prefix + "occupied_bits");
-    fits = fits && bits.size() == (cells + 7) / 8;
-    if (fits) f.occupancy.occupied = UnpackBits(bits, cells);
-  } else {
-    f.occupancy.occupied = reader.Bytes(prefix + "occupied");
+  f.occupancy.occupied = StoredOccupied(reader, prefix, cells);
+  fits = fits && f.occupancy.occupied.size() == cells;
+  if (reader.Has(prefix + "occupancy_tau")) {
     f.occupancy.tau = reader.Floats(prefix + "occupancy_tau");
-    fits = fits && f.occupancy.occupied.size() == cells && f.occupancy.tau.size() == cells;
+    fits = fits && f.occupancy.tau.size() == cells;
     // In checkpoints of older programs all cells were judged by sharp samples alone.
     const std::vector<uint8_t> all((cells + 7) / 8, 0xFFU);
-    f.occupancy.judged = UnpackBits(reader.Has(prefix + "judged_bits") ? reader.Bytes(prefix + "judged_bits") : all, cells);
+    f.occupancy.judged = UnpackBits<std::vector<uint8_t>>(reader.Has(prefix + "judged_bits") ? reader.Bytes(prefix + "judged_bits") : all, cells);
   }
   if (!fits || static_cast<int64_t>(f.parameters.grid.size()) != f.field->GridParameters() ||
       static_cast<int64_t>(f.parameters.networks.size()) != f.field->NetworkParameters() || !(f.occupancy.cell > 0.0F) || !(f.step_m > 0.0)) {

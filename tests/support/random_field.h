@@ -35,7 +35,7 @@ inline TrainedField RandomField(uint64_t seed, const Eigen::Vector3d& low, const
   f.parameters.networks.resize(static_cast<size_t>(shape.NetworkParameters()));
   shape.Initialize(random, f.parameters.grid, f.parameters.networks);
   for (float& value : f.parameters.grid) value = 4.0F * (random.Uniform() - 0.5F);
-  for (uint8_t& cell : f.occupancy.occupied) cell = random.Uniform() < 0.7F ? 1 : 0;
+  for (auto&& cell : f.occupancy.occupied) cell = random.Uniform() < 0.7F;
   f.BuildNetworks();
   return f;
 }

@@ -182,7 +182,7 @@ TEST_F(TrainBlockTest, BandsOfTheContextAreWhereABlockStarts) {
   StartFromSurfaces(source, {}, survey_, TrainingTiles(survey_, photos), context, target);
   const auto occupied = [&](double x, double y, double z) {
     const Eigen::Vector3f unit = target.map.UnitFromEnu({x, y, z});
-    return target.occupancy.occupied[static_cast<size_t>(target.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] != 0;
+    return target.occupancy.occupied[static_cast<size_t>(target.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))];
   };
   for (double x = -9.0; x < 9.5; x += 1.5) {
     EXPECT_TRUE(occupied(x, 2.0, 1.5)) << x;

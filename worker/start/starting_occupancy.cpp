@@ -30,7 +30,7 @@ void OccupyAlong(const RaySource& source, const Tile& tile, double near, double 
   for (double t = begin; t < end; t += 0.5 * cell_m) {
     const Eigen::Vector3f unit = target.map.UnitFromEnu(origin + t * direction);
     const auto index = static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()));
-    if (grid.tau[index] >= 0.0F) grid.occupied[index] = 1;
+    if (grid.tau[index] >= 0.0F) grid.occupied[index] = true;
   }
 }
 
@@ -78,13 +78,16 @@ void MarkUnseen(const RaySource& source, const survey::Survey& survey, const std
           for (int y = gy * kGroup; y < std::min(grid.size[1], (gy + 1) * kGroup); ++y) {
             for (int x = gx * kGroup; x < std::min(grid.size[0], (gx + 1) * kGroup); ++x) {
               grid.tau[static_cast<size_t>(grid.Index(x, y, z))] = -1.0F;
-              grid.occupied[static_cast<size_t>(grid.Index(x, y, z))] = 0;
             }
           }
         }
       }
     }
   });
+  // Not by several threads: cells share words.
+  for (size_t i = 0; i < grid.tau.size(); ++i) {
+    if (grid.tau[i] < 0.0F) grid.occupied[i] = false;
+  }
 }
 
 void StartEverywhere(render::TrainedField& target) {
@@ -128,7 +131,7 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
     for (int y = 0; y < grid.size[1]; ++y) {
       for (int x = 0; x < grid.size[0]; ++x) {
         const auto index = static_cast<size_t>(grid.Index(x, y, z));
-        if (grid.occupied[index] == 0) continue;
+        if (!grid.occupied[index]) continue;
         const Eigen::Vector3d p =
             target.map.EnuFromUnit((Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5) * static_cast<double>(grid.cell)).cwiseMin(target.map.extent()));
         if ((p.array() < low.array()).any() || (p.array() > high.array()).any()) continue;
@@ -136,32 +139,32 @@ void StartFromPoints(const survey::Survey& survey, render::TrainedField& target)
                                       static_cast<size_t>((p.x() - low.x()) / column_m)];
         const double highest = column.count == 0 ? column.highest_around : column.highest;
         if (!std::isfinite(highest)) continue;
-        if (p.z() < column.lowest - cell_m || p.z() > highest + cell_m) grid.occupied[index] = 0;
+        if (p.z() < column.lowest - cell_m || p.z() > highest + cell_m) grid.occupied[index] = false;
       }
     }
   }
   for (size_t i = 0; i < grid.tau.size(); ++i) {
-    if (grid.tau[i] >= 0.0F) grid.tau[i] = grid.occupied[i] != 0 ? kStartTau : 0.0F;
+    if (grid.tau[i] >= 0.0F) grid.tau[i] = grid.occupied[i] ? kStartTau : 0.0F;
   }
 }
 
 void StartFromRanges(const RaySource& source, const PointRanges& ranges, const std::vector<Tile>& tiles, render::TrainedField& target) {
   field::OccupancyGrid& grid = target.occupancy;
-  std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
+  std::fill(grid.occupied.begin(), grid.occupied.end(), false);
   for (const Tile& tile : tiles) {
     const PointRanges::Range& range = ranges.Of(tile);
     if (!range.Sky()) OccupyAlong(source, tile, static_cast<double>(range.near), static_cast<double>(range.far), target);
   }
   grid.Dilate(1);  // between tile centres
-  for (size_t i = 0; i < grid.tau.size(); ++i) grid.tau[i] = grid.occupied[i] != 0 ? kStartTau : std::min(grid.tau[i], 0.0F);
+  for (size_t i = 0; i < grid.tau.size(); ++i) grid.tau[i] = grid.occupied[i] ? kStartTau : std::min(grid.tau[i], 0.0F);
 }
 
 void StartFromSurfaces(const RaySource& source, const PointRanges& ranges, const survey::Survey& survey, const std::vector<Tile>& tiles,
                        const LoadedContext& context, render::TrainedField& target) {
   if (!context.HasSurfaceIntervals(survey)) return;
   field::OccupancyGrid& grid = target.occupancy;
-  const std::vector<uint8_t> before = grid.occupied;
-  std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
+  const std::vector<bool> before = grid.occupied;
+  std::fill(grid.occupied.begin(), grid.occupied.end(), false);
   // The context's surfaces are blurred by about one of its marching steps.
   const double pad_m = context.field.step_m;
   for (const Tile& tile : tiles) {
@@ -178,9 +181,9 @@ void StartFromSurfaces(const RaySource& source, const PointRanges& ranges, const
     if ((point.x_in_enu.array() < target.map.min_enu().array()).any() || (point.x_in_enu.array() > target.map.max_enu().array()).any()) continue;
     const Eigen::Vector3f unit = target.map.UnitFromEnu(point.x_in_enu);
     const auto index = static_cast<size_t>(grid.IndexAt(unit.x(), unit.y(), unit.z()));
-    if (grid.tau[index] >= 0.0F) grid.occupied[index] = 1;
+    if (grid.tau[index] >= 0.0F) grid.occupied[index] = true;
   }
-  for (size_t i = 0; i < grid.tau.size(); ++i) grid.tau[i] = grid.occupied[i] != 0 ? kStartTau : std::min(grid.tau[i], 0.0F);
+  for (size_t i = 0; i < grid.tau.size(); ++i) grid.tau[i] = grid.occupied[i] ? kStartTau : std::min(grid.tau[i], 0.0F);
 }
 
 }  // namespace skyquilt::worker

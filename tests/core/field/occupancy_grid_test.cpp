@@ -28,11 +28,11 @@ TEST(OccupancyGrid, RefreshKeepsDenseCellsAndNeverUnseenOnes) {
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.5, 1000);
   grid.tau = {0.5F, 0.0F, -1.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.001F};
   grid.UpdateOccupied(0.01F);
-  EXPECT_EQ(grid.occupied[0], 1);
-  EXPECT_EQ(grid.occupied[2], 0);
-  EXPECT_EQ(grid.occupied[7], 0);
+  EXPECT_TRUE(grid.occupied[0]);
+  EXPECT_FALSE(grid.occupied[2]);
+  EXPECT_FALSE(grid.occupied[7]);
   grid.Dilate(1);
-  for (size_t i = 0; i < 8; ++i) EXPECT_EQ(grid.occupied[i], i == 2 ? 0 : 1);
+  for (size_t i = 0; i < 8; ++i) EXPECT_EQ(grid.occupied[i], i != 2);
 }
 
 TEST(OccupancyGrid, EmptySamplesFreeACellAndDenseOnesKeepIt) {
@@ -46,10 +46,10 @@ TEST(OccupancyGrid, EmptySamplesFreeACellAndDenseOnesKeepIt) {
     grid.UpdateTau(5, 3.0F);
   }
   grid.UpdateOccupied(0.01F);
-  EXPECT_EQ(grid.occupied[0], 0);
-  EXPECT_EQ(grid.occupied[1], 1);
-  EXPECT_EQ(grid.occupied[2], 1) << "not sampled, so unchanged";
-  EXPECT_EQ(grid.occupied[5], 0) << "cells never seen stay empty";
+  EXPECT_FALSE(grid.occupied[0]);
+  EXPECT_TRUE(grid.occupied[1]);
+  EXPECT_TRUE(grid.occupied[2]) << "not sampled, so unchanged";
+  EXPECT_FALSE(grid.occupied[5]) << "cells never seen stay empty";
   EXPECT_FLOAT_EQ(grid.tau[5], -1.0F);
 }
 
@@ -72,11 +72,11 @@ TEST(OccupancyGrid, SurfacesRaiseTheirSixNeighbours) {
 TEST(OccupancyGrid, DilateReachesExactlyItsDistance) {
   const double extent[3] = {1.0, 1.0, 1.0};
   OccupancyGrid grid = OccupancyGrid::Make(extent, 0.1, 2000);
-  std::fill(grid.occupied.begin(), grid.occupied.end(), uint8_t{0});
-  grid.occupied[static_cast<size_t>(grid.Index(5, 5, 5))] = 1;
+  std::fill(grid.occupied.begin(), grid.occupied.end(), false);
+  grid.occupied[static_cast<size_t>(grid.Index(5, 5, 5))] = true;
   grid.Dilate(2);
   int count = 0;
-  for (const uint8_t v : grid.occupied) count += v;
+  for (const bool v : grid.occupied) count += v ? 1 : 0;
   EXPECT_EQ(count, 125);
 }
 
@@ -108,7 +108,7 @@ TEST(OccupancyGrid, ForgetsCellsThatWereNeverSampled) {
   grid.MarkUnsampled(0.1F);
   for (int64_t i = 0; i < 8; ++i) {
     EXPECT_EQ(grid.tau[static_cast<size_t>(i)] < 0.0F, i != 3 && i != 4) << i;
-    EXPECT_EQ(grid.occupied[static_cast<size_t>(i)], i == 3 || i == 4 ? 1 : 0) << i;
+    EXPECT_EQ(grid.occupied[static_cast<size_t>(i)], i == 3 || i == 4) << i;
   }
 }
 

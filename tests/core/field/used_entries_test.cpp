@@ -23,7 +23,7 @@ OccupancyGrid Occupancy(uint64_t seed, double share) {
   const double extent[3] = {1.0, 0.8, 0.3};
   OccupancyGrid occupancy = OccupancyGrid::Make(extent, 0.07, 100000);
   base::Random random(seed);
-  for (uint8_t& cell : occupancy.occupied) cell = random.UniformDouble() < share ? 1 : 0;
+  for (auto&& cell : occupancy.occupied) cell = random.UniformDouble() < share;
   return occupancy;
 }
 
@@ -49,7 +49,7 @@ TEST(UsedEntries, ContainAllThatPositionsInOccupiedCellsRead) {
     for (int z = 0; z < occupancy.size[2]; ++z) {
       for (int y = 0; y < occupancy.size[1]; ++y) {
         for (int x = 0; x < occupancy.size[0]; ++x) {
-          if (occupancy.occupied[static_cast<size_t>(occupancy.Index(x, y, z))] == 0) continue;
+          if (!occupancy.occupied[static_cast<size_t>(occupancy.Index(x, y, z))]) continue;
           for (int i = 0; i < 60; ++i) {
             float p[3];
             const int cell[3] = {x, y, z};
@@ -74,7 +74,7 @@ TEST(UsedEntries, OmitThoseFarFromOccupiedCells) {
   const encoding::HashGrid grid = Grid(20);
   OccupancyGrid occupancy = Occupancy(7, 0.0);
   EXPECT_EQ(Count(UsedEntries(grid, occupancy)), 0U);
-  occupancy.occupied[static_cast<size_t>(occupancy.Index(3, 4, 2))] = 1;
+  occupancy.occupied[static_cast<size_t>(occupancy.Index(3, 4, 2))] = true;
   const std::vector<uint8_t> bits = UsedEntries(grid, occupancy);
   size_t most = 0;
   for (int l = 0; l < grid.levels(); ++l) {
@@ -84,7 +84,7 @@ TEST(UsedEntries, OmitThoseFarFromOccupiedCells) {
   }
   EXPECT_LE(Count(bits), most);
   EXPECT_GE(Count(bits), 8U * static_cast<size_t>(grid.levels()));
-  occupancy.occupied.assign(occupancy.occupied.size(), 1);
+  occupancy.occupied.assign(occupancy.occupied.size(), true);
   size_t entries = 0;
   for (int l = 0; l < grid.levels(); ++l) entries += grid.level(l).entries;
   EXPECT_EQ(Count(UsedEntries(grid, occupancy)), entries);

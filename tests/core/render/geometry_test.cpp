@@ -59,11 +59,11 @@ RC_GTEST_PROP(March, LongStepsMissNothing, ()) {
   const double extent[3] = {1.0, 1.0, 1.0};
   f.occupancy = field::OccupancyGrid::Make(extent, 0.05, 8000);
   f.step_m = 0.2;
-  std::fill(f.occupancy.occupied.begin(), f.occupancy.occupied.end(), uint8_t{0});
+  std::fill(f.occupancy.occupied.begin(), f.occupancy.occupied.end(), false);
   const int layer = *rc::gen::inRange(0, 20);
   const int thick = *rc::gen::inRange(1, 4);
   for (int z = layer; z < std::min(20, layer + thick); ++z) {
-    for (int i = 0; i < 400; ++i) f.occupancy.occupied[400 * static_cast<size_t>(z) + static_cast<size_t>(i)] = 1;
+    for (int i = 0; i < 400; ++i) f.occupancy.occupied[400 * static_cast<size_t>(z) + static_cast<size_t>(i)] = true;
   }
   const double x = *rc::gen::inRange(100, 900) / 100.0, y = *rc::gen::inRange(100, 900) / 100.0;
   const double slope = *rc::gen::inRange(-5, 6) / 100.0;
@@ -85,7 +85,7 @@ RC_GTEST_PROP(March, LongStepsMissNothing, ()) {
 TEST(March, SamplesAreInOccupiedCellsOnly) {
   TrainedField f = BoxField();
   base::Random random(43);
-  for (uint8_t& cell : f.occupancy.occupied) cell = random.Below(3) == 0 ? 1 : 0;
+  for (auto&& cell : f.occupancy.occupied) cell = random.Below(3) == 0;
   int samples = 0;
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector3d origin{random.Uniform(-6, 6), random.Uniform(-6, 6), 8.0};
@@ -96,7 +96,7 @@ TEST(March, SamplesAreInOccupiedCellsOnly) {
     int64_t k = 0;
     for (double t = s.t_near + 0.05; t < s.t_far && !s.Empty(); t += f.step_m, ++k) {
       const Eigen::Vector3f p = f.map.UnitFromEnu(origin + t * direction);
-      if (f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(p.x(), p.y(), p.z()))] != 0) expected.insert(k);
+      if (f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(p.x(), p.y(), p.z()))]) expected.insert(k);
     }
     March(f, origin, direction, s, f.step_m, 0.5F, [&](double t, double, double, int64_t) {
       got.insert(static_cast<int64_t>(std::lround((t - s.t_near - 0.05) / f.step_m)));

@@ -186,7 +186,7 @@ TEST_F(TrainedFieldFile, HasANameForEveryNumber) {
 TEST_P(TrainedFieldOf, RendersTheSameWithoutUnreadEntries) {
   render::TrainedField before = Make(GetParam(), 1);
   base::Random random(8);
-  for (uint8_t& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F ? 1 : 0;
+  for (auto&& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F;
   const auto [checkpoint, scene] = WriteScene(before);
   const checkpoint::ArchiveReader reader(scene);
   render::TrainedField after = Read(scene);
@@ -247,7 +247,7 @@ TEST_F(TrainedFieldFile, OfASceneRendersTheSameWithAnyNumberOfPositions) {
     render::TrainedField before = ConesOf(multisample, false);
     before.footprint_min_m = 0.5;
     base::Random random(8);
-    for (uint8_t& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F ? 1 : 0;
+    for (auto&& cell : before.occupancy.occupied) cell = random.Uniform() < 0.05F;
     const auto [checkpoint, scene] = WriteScene(before);
     ExpectSameLook(before, Read(scene), 0.01F);
   }

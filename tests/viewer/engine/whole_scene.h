@@ -36,7 +36,7 @@ inline void WriteWholeScene(const std::filesystem::path& file, const WholeScene&
   }
   if (what.solid) {
     std::fill(block.parameters.grid.begin(), block.parameters.grid.end(), 0.0F);
-    std::fill(block.occupancy.occupied.begin(), block.occupancy.occupied.end(), uint8_t{1});
+    std::fill(block.occupancy.occupied.begin(), block.occupancy.occupied.end(), true);
   }
   const brightness::Response response = brightness::Response::Neutral(2, 1);
   scene::Background background;

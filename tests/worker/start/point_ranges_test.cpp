@@ -255,11 +255,11 @@ TEST_F(PointRangesTest, TrainingStartsNearThePointsAndLeavesTheSkyFree) {
     const Eigen::Vector3f unit = f.map.UnitFromEnu({x, y, z});
     return static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()));
   };
-  EXPECT_EQ(f.occupancy.occupied[cell(8.0, kWall, 5.0)], 1);
-  EXPECT_EQ(f.occupancy.occupied[cell(8.0, 3.0, 2.0)], 0) << "before the cameras";
-  EXPECT_EQ(f.occupancy.occupied[cell(8.0, 38.0, 5.0)], 0) << "behind the wall";
+  EXPECT_TRUE(f.occupancy.occupied[cell(8.0, kWall, 5.0)]);
+  EXPECT_FALSE(f.occupancy.occupied[cell(8.0, 3.0, 2.0)]) << "before the cameras";
+  EXPECT_FALSE(f.occupancy.occupied[cell(8.0, 38.0, 5.0)]) << "behind the wall";
   EXPECT_LT(f.occupancy.tau[cell(8.0, 38.0, 5.0)], 0.0F);
-  EXPECT_EQ(f.occupancy.occupied[cell(8.0, kWall, 15.5)], 0) << "sky";
+  EXPECT_FALSE(f.occupancy.occupied[cell(8.0, kWall, 15.5)]) << "sky";
 }
 
 TEST_F(PointRangesTest, TheBackgroundHasTheColourOfTheSkyAboveTheHorizon) {

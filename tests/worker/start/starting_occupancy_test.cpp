@@ -21,7 +21,7 @@ render::TrainedField EmptyField() {
 
 bool Occupied(const render::TrainedField& f, double x, double y, double z) {
   const Eigen::Vector3f unit = f.map.UnitFromEnu({x, y, z});
-  return f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))] != 0;
+  return f.occupancy.occupied[static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()))];
 }
 
 survey::SparsePoint PointAt(double x, double y, double z) {
@@ -61,9 +61,9 @@ TEST(StartingOccupancy, PointsBoundTheSurface) {
 TEST(StartingOccupancy, WithoutPointsEverythingSeenStays) {
   render::TrainedField f = EmptyField();
   const size_t hidden = static_cast<size_t>(f.occupancy.Index(3, 3, 3));
-  f.occupancy.occupied[hidden] = 0;
+  f.occupancy.occupied[hidden] = false;
   f.occupancy.tau[hidden] = -1.0F;
-  const std::vector<uint8_t> before = f.occupancy.occupied;
+  const std::vector<bool> before = f.occupancy.occupied;
   StartFromPoints(survey::Survey{}, f);
   EXPECT_EQ(f.occupancy.occupied, before);
 }
@@ -73,11 +73,11 @@ TEST(StartingOccupancy, EverywhereKeepsAllSeenCells) {
   const double extent[3] = {1.0, 1.0, 0.5};
   target.occupancy = field::OccupancyGrid::Make(extent, 0.25, 1000);
   target.occupancy.tau[3] = -1.0F;
-  target.occupancy.occupied[3] = 0;
+  target.occupancy.occupied[3] = false;
   StartEverywhere(target);
   for (size_t i = 0; i < target.occupancy.tau.size(); ++i) {
     EXPECT_EQ(target.occupancy.tau[i], i == 3 ? -1.0F : kStartTau) << i;
-    EXPECT_EQ(target.occupancy.occupied[i], i == 3 ? 0 : 1) << i;
+    EXPECT_EQ(target.occupancy.occupied[i], i != 3) << i;
   }
 }
 
@@ -85,10 +85,10 @@ TEST(StartingOccupancy, NeverSeenCellsStayNeverSeen) {
   render::TrainedField f = EmptyField();
   const Eigen::Vector3f unit = f.map.UnitFromEnu({8.0, 30.0, 3.0});
   const auto hidden = static_cast<size_t>(f.occupancy.IndexAt(unit.x(), unit.y(), unit.z()));
-  f.occupancy.occupied[hidden] = 0;
+  f.occupancy.occupied[hidden] = false;
   f.occupancy.tau[hidden] = -1.0F;
   StartFromPoints(TownOfOneTower(), f);
-  EXPECT_EQ(f.occupancy.occupied[hidden], 0);
+  EXPECT_FALSE(f.occupancy.occupied[hidden]);
   EXPECT_FLOAT_EQ(f.occupancy.tau[hidden], -1.0F);
 }
 

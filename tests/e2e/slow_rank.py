@@ -8,7 +8,7 @@ import time
 
 from harness import children, expect, main, small_project, state_of
 
-TRAIN = ["--steps", "2200", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096", "--set", "context.steps=300"]
+TRAIN = ["--steps", "5000", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096", "--set", "context.steps=300"]
 
 
 def rank_of(pid):

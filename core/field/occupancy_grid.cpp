@@ -43,7 +43,7 @@ void OccupancyGrid::RaiseNeighbours(float solid, float wake) {
   }
 }
 
-double OccupancyGrid::UpdateOccupied(float limit) {
+void OccupancyGrid::UpdateOccupied(float limit) {
   double sum = 0.0;
   int64_t seen = 0;
   for (const float value : tau) {
@@ -53,14 +53,11 @@ double OccupancyGrid::UpdateOccupied(float limit) {
     }
   }
   const float threshold = std::min(limit, seen > 0 ? static_cast<float>(sum / static_cast<double>(seen)) : 0.0F);
-  int64_t count = 0;
   // Few cells change, and a write to a bit waits for the one before.
   for (size_t i = 0; i < tau.size(); ++i) {
     const bool now = tau[i] > threshold;
-    count += now ? 1 : 0;
     if (occupied[i] != now) occupied[i] = now;
   }
-  return tau.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(tau.size());
 }
 
 void OccupancyGrid::MarkUnsampled(float start) {

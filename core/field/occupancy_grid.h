@@ -40,8 +40,8 @@ struct OccupancyGrid {
   }
   // Raises tau of the six neighbours of every cell with tau > solid to at least `wake`, so that a surface can grow into them. Cells never seen stay.
   void RaiseNeighbours(float solid, float wake);
-  // Sets `occupied` where tau is above min(limit, mean over seen cells). Returns OccupiedShare().
-  double UpdateOccupied(float limit);
+  // Sets `occupied` where tau is above min(limit, mean over seen cells).
+  void UpdateOccupied(float limit);
   // Treats cells whose tau still has its initial value `start` as never seen: no sample was in them, so nothing was learned there.
   void MarkUnsampled(float start);
   // Share of all cells that are occupied, 0 to 1.

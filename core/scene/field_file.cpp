@@ -226,7 +226,8 @@ render::TrainedField GetField(const checkpoint::ArchiveReader& reader, const std
   const auto cells = static_cast<size_t>(fits ? f.occupancy.CellCount() : 0);
   f.occupancy.occupied = StoredOccupied(reader, prefix, cells);
   fits = fits && f.occupancy.occupied.size() == cells;
-  if (reader.Has(prefix + "occupancy_tau")) {
+  const bool is_checkpoint = reader.Has(prefix + "judged_bits") || !reader.Has(prefix + "occupied_bits");
+  if (is_checkpoint) {
     f.occupancy.tau = reader.Floats(prefix + "occupancy_tau");
     fits = fits && f.occupancy.tau.size() == cells;
     // In checkpoints of older programs all cells were judged by sharp samples alone.

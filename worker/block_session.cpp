@@ -86,6 +86,26 @@ void GetGuard(const checkpoint::ArchiveReader& reader, SessionRecord& record) {
   }
 }
 
+std::string ProposalName(size_t proposal, const char* array) {
+  return "proposal" + std::to_string(proposal) + "_" + array;
+}
+
+// Calls visit(name, array, state) for every array of a sampler's proposals.
+template <typename Visit>
+void VisitProposals(FieldTrainer& trainer, const Visit& visit) {
+  if (trainer.sampler() == nullptr) return;
+  const auto proposals = trainer.sampler()->proposals();
+  for (size_t i = 0; i < proposals.size(); ++i) {
+    ProposalNetwork& proposal = *proposals[i];
+    visit(ProposalName(i, "grid"), proposal.parameters().grid);
+    visit(ProposalName(i, "networks"), proposal.parameters().networks);
+    visit(ProposalName(i, "grid_moment1"), proposal.state().grid_moment1);
+    visit(ProposalName(i, "grid_moment2"), proposal.state().grid_moment2);
+    visit(ProposalName(i, "network_moment1"), proposal.state().network_moment1);
+    visit(ProposalName(i, "network_moment2"), proposal.state().network_moment2);
+  }
+}
+
 }  // namespace
 
 void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedField& target, FieldTrainer& trainer, const SessionRecord& record,
@@ -101,6 +121,10 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.Put("grid_moment2", state.grid_moment2);
   writer.Put("network_moment1", state.network_moment1);
   writer.Put("network_moment2", state.network_moment2);
+  VisitProposals(trainer, [&](const std::string& name, const std::vector<float>& array) { writer.Put(name, array); });
+  for (size_t i = 0; trainer.sampler() != nullptr && i < trainer.sampler()->proposals().size(); ++i) {
+    writer.SetAttribute(ProposalName(i, "steps"), trainer.sampler()->proposals()[i]->state().step);
+  }
   writer.SetAttribute("config_hash", job.config_hash);
   writer.SetAttribute("seed", static_cast<int64_t>(job.seed));
   writer.SetAttribute("rays_per_step", static_cast<int64_t>(trainer.rays_per_step()));
@@ -206,12 +230,11 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
   const checkpoint::ArchiveReader& reader = session.reader;
   render::TrainedField loaded = scene::GetField(reader, usable, "");
   field::OptimizerState& state = trainer.state();
-  const auto take = [&](std::vector<float>& to, std::vector<float> from, const char* name) {
+  const auto take = [&](std::vector<float>& to, std::vector<float> from, const std::string& name) {
     if (from.size() != to.size()) {
-      throw base::InputError(usable,
-                             std::string("array '") + name + "' has " + std::to_string(from.size()) + " numbers, but this configuration needs " +
-                                 std::to_string(to.size()),
-                             "Train again with --restart");
+      throw base::InputError(
+          usable, "array '" + name + "' has " + std::to_string(from.size()) + " numbers, but this configuration needs " + std::to_string(to.size()),
+          "Train again with --restart");
     }
     std::copy(from.begin(), from.end(), to.begin());  // copied, not moved: the target's buffers are aligned for random access
   };
@@ -221,6 +244,10 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
   take(state.grid_moment2, reader.Floats("grid_moment2"), "grid_moment2");
   take(state.network_moment1, reader.Floats("network_moment1"), "network_moment1");
   take(state.network_moment2, reader.Floats("network_moment2"), "network_moment2");
+  VisitProposals(trainer, [&](const std::string& name, std::vector<float>& array) { take(array, reader.Floats(name), name); });
+  for (size_t i = 0; trainer.sampler() != nullptr && i < trainer.sampler()->proposals().size(); ++i) {
+    trainer.sampler()->proposals()[i]->state().step = reader.IntAttribute(ProposalName(i, "steps"));
+  }
   if (extras != nullptr) {
     *extras->response = brightness::GetResponse(reader, usable);
     extras->learner->Get(reader, usable);

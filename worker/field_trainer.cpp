@@ -15,6 +15,8 @@ constexpr float kOccupancyLimit = 0.01F;
 // about a dozen samples that find no density.
 constexpr float kSolidTau = 0.4F, kWakeTau = 0.03F;
 constexpr int kFewestRays = 64;
+// Share of the training from which samplers of bins mark the cells where rays end.
+constexpr double kMarkLitFrom = 0.5;
 // Streams of the random generator, so that cells, parameters and rays use independent random numbers.
 constexpr uint64_t kCellStream = 2, kInitStream = 3;
 
@@ -31,6 +33,14 @@ TrainOptions WithoutPyramid(TrainOptions options) {
   return options;
 }
 
+std::optional<BinSampler> MakeSampler(const TrainOptions& options, const render::TrainedField& target, const field::HashField& field, uint64_t seed,
+                                      base::ThreadPool& threads, PhaseTimes& times) {
+  const Sampler sampler = SamplerNamed(options.sampler);
+  if (sampler == Sampler::kOccupancy) return std::nullopt;
+  return std::make_optional<BinSampler>(sampler, SamplesPerPass(sampler, options.ray_samples), options.stratified, target, field, seed, threads,
+                                        times);
+}
+
 }  // namespace
 
 FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options,
@@ -43,12 +53,14 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       threads_(threads),
       times_(threads.size()),
       field_(target.config),
-      drawer_(target, source, seed, NeighboursOf(luminance.luminance), options.stratified, threads, times_),
+      sampler_(MakeSampler(options, target, field_, seed, threads, times_)),
+      drawer_(target, source, seed, NeighboursOf(luminance.luminance), options.stratified, sampler(), threads, times_),
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
       priors_(priors),
       source_(source),
-      rays_per_step_(std::max(kFewestRays, options.batch_samples / 24)) {
+      rays_per_step_(std::max(kFewestRays, options.batch_samples / (sampler_ ? sampler_->LastBins() : 24))),
+      evaluators_(static_cast<size_t>(threads.size())) {
   target.parameters.Allocate(field_);
   state_.Allocate(field_);
 }
@@ -56,6 +68,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
 void FieldTrainer::InitializeParameters() {
   base::Random random(seed_, kInitStream);
   field_.Initialize(random, target_.parameters.grid, target_.parameters.networks);
+  if (sampler_) sampler_->InitializeParameters();
   if (!target_.config.luminance) return;
   const double omega = std::clamp(std::exp(start_log_gain_), 1e-4, 1.0 - 1e-4);
   target_.parameters.networks[static_cast<size_t>(field_.LuminanceOffset() + field::kLuminanceTaps)] =
@@ -66,6 +79,7 @@ void FieldTrainer::MeasureFootprints() {
   if (!target_.config.Cones()) return;
   constexpr int kRays = 8192;
   constexpr uint64_t kNoStep = ~uint64_t{0};
+  if (sampler_) sampler_->Begin(0.0, RayDrawer::Groups(kRays));
   // At full size, so that the range does not depend on the drawn levels.
   drawer_.Draw(static_cast<int64_t>(kNoStep >> 1U), kRays, field_.FeatureRows(), PhotoPyramid(), {}, &batch_);
   std::vector<double> widths;
@@ -86,6 +100,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   const PhotoPyramid pyramid(options_.pyramid, options_.pyramid_start, kPyramidUntil, progress);
   StepOptions step;
   step.priors = priors_.StepAt(progress, target_.step_m / options_.step_voxels);
+  if (sampler_) sampler_->Begin(progress, RayDrawer::Groups(rays_per_step_));
   drawer_.Draw(state_.step, rays_per_step_, field_.FeatureRows(), pyramid, priors_.RaysFor(step.priors), &batch_);
   const double warm_up = std::min(1.0, static_cast<double>(state_.step + 1) / kWarmUpSteps);
   const double decay = std::pow(options_.final_learning_rate_share, std::clamp((progress - kDecayFrom) / (1.0 - kDecayFrom), 0.0, 1.0));
@@ -98,7 +113,8 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
     learner->Step(progress);
     source_.UpdateExposures();
   }
-  ObserveSamples();
+  if (!sampler_) ObserveSamples();
+  if (sampler_ && result.finite) UseFoundWeights(progress, step.learning_rate);
   // Chooses the next number of rays so that the batch is full at this step's samples per ray; it changes by a quarter at most.
   if (result.n_rays > 0 && result.n_samples > 0) {
     const double wanted = static_cast<double>(options_.batch_samples) * result.n_rays / static_cast<double>(result.n_samples);
@@ -129,7 +145,26 @@ void FieldTrainer::ObserveSamples() {
   });
 }
 
-void FieldTrainer::StepTaus(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth) {
+void FieldTrainer::UseFoundWeights(double progress, double learning_rate) {
+  const bool marks = progress >= kMarkLitFrom, learns = sampler_->Learns(progress, state_.step);
+  if (!marks && !learns) return;
+  const auto start = PhaseTimes::Clock::now();
+  // Compositing weights of the last step's samples. Behind the last sample that light reached all are 0.
+  const std::vector<float>& taus = step_.ObservedTaus();
+  const auto bins = static_cast<size_t>(sampler_->LastBins());
+  found_.resize(batch_.rays.size() * bins);
+  for (size_t r = 0; r < batch_.rays.size(); ++r) {
+    const auto begin = static_cast<size_t>(batch_.rays[r].begin);
+    const std::span<float> weights(found_.data() + r * bins, bins);
+    for (size_t i = 0; i < bins; ++i) weights[i] = taus[begin + i] * batch_.unit_length[begin + i];
+    WeightsOfTaus(std::span<const float>(weights), weights.data());
+  }
+  if (marks) sampler_->MarkLit(found_, target_.occupancy);
+  times_.Add(0, Phase::kSampler, start);
+  if (learns) sampler_->Learn(found_, learning_rate);
+}
+
+void FieldTrainer::DensityAt(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth) {
   const auto n = static_cast<int64_t>(x.size());
   depth->assign(x.size(), 0.0F);
   constexpr int64_t kRun = 16 * field::kChunk;
@@ -137,24 +172,51 @@ void FieldTrainer::StepTaus(const std::vector<float>& x, const std::vector<float
   threads_.ParallelFor((n + kRun - 1) / kRun, [&](int64_t task, int thread) {
     const auto start = PhaseTimes::Clock::now();
     const int64_t begin = task * kRun;
-    const int64_t count = std::min(kRun, n - begin);
-    const int64_t padded = kernel::Padded(count);
-    const size_t stride = kernel::StrideFor(count);
-    std::vector<float> features(static_cast<size_t>(field_.FeatureRows()) * stride, 0.0F);
-    std::vector<float> geometry(static_cast<size_t>(field::kGeometryRows) * field::kChunkStride);
-    std::vector<float> hidden(static_cast<size_t>(field_.DensityHiddenRows()) * field::kChunkStride);
-    field_.EncodeSerial(target_.parameters.grid, {x.data() + begin, y.data() + begin, z.data() + begin}, count, features.data(), stride);
-    for (int64_t s = 0; s < padded; s += field::kChunk) {
-      const int64_t size = std::min<int64_t>(field::kChunk, padded - s);
-      field_.Density(weights, features.data() + s, stride, size, hidden.data(), field::kChunkStride, geometry.data(), field::kChunkStride);
-      kernel::ExpShifted(geometry.data(), size, static_cast<float>(target_.config.density_bias), kMaxLogTau, geometry.data());
-      std::copy_n(geometry.begin(), std::min(size, count - s), depth->begin() + begin + s);
-    }
+    evaluators_[static_cast<size_t>(thread)].Evaluate(field_, weights, target_.parameters.grid,
+                                                      {x.data() + begin, y.data() + begin, z.data() + begin}, std::min(kRun, n - begin),
+                                                      depth->data() + begin);
     times_.Add(thread, Phase::kOccupancy, start);
   });
 }
 
+void FieldTrainer::FindOccupied() {
+  constexpr int64_t kCellsAtOnce = 1 << 16;
+  constexpr int kPlacesPerCell = 8;  // one in each eighth
+  field::OccupancyGrid& grid = target_.occupancy;
+  // The lit cells and their neighbours, as not every cell of a surface was hit.
+  field::OccupancyGrid lit = grid;
+  lit.occupied.assign(grid.judged.begin(), grid.judged.end());
+  lit.Dilate(1);
+  std::vector<int64_t> chosen;
+  std::vector<float> x, y, z, depth;
+  base::Random random(MixSeed(seed_, static_cast<uint64_t>(state_.step), 1), kCellStream);
+  for (int64_t first = 0; first < grid.CellCount(); first += kCellsAtOnce) {
+    for (auto* v : {&x, &y, &z}) v->clear();
+    chosen.clear();
+    for (int64_t index = first; index < std::min(grid.CellCount(), first + kCellsAtOnce); ++index) {
+      float& tau = grid.tau[static_cast<size_t>(index)];
+      if (tau < 0.0F) continue;
+      tau = 0.0F;
+      if (!lit.occupied[static_cast<size_t>(index)]) continue;
+      chosen.push_back(index);
+      const int64_t at[3] = {index % grid.size[0], index / grid.size[0] % grid.size[1], index / grid.size[0] / grid.size[1]};
+      for (int place = 0; place < kPlacesPerCell; ++place) {
+        x.push_back((static_cast<float>(at[0]) + 0.5F * (static_cast<float>(place & 1) + random.Uniform())) * grid.cell);
+        y.push_back((static_cast<float>(at[1]) + 0.5F * (static_cast<float>(place >> 1 & 1) + random.Uniform())) * grid.cell);
+        z.push_back((static_cast<float>(at[2]) + 0.5F * (static_cast<float>(place >> 2) + random.Uniform())) * grid.cell);
+      }
+    }
+    DensityAt(x, y, z, &depth);
+    for (size_t i = 0; i < chosen.size(); ++i) {
+      const auto places = depth.begin() + static_cast<ptrdiff_t>(i) * kPlacesPerCell;
+      grid.tau[static_cast<size_t>(chosen[i])] = *std::max_element(places, places + kPlacesPerCell);
+    }
+  }
+  grid.UpdateOccupied(kOccupancyLimit);
+}
+
 void FieldTrainer::UpdateOccupancy(bool grow) {
+  if (sampler_) return;
   field::OccupancyGrid& grid = target_.occupancy;
   base::Random random(MixSeed(seed_, static_cast<uint64_t>(state_.step), 0), kCellStream);
   std::vector<int64_t> chosen;
@@ -170,7 +232,7 @@ void FieldTrainer::UpdateOccupancy(bool grow) {
     y.push_back((static_cast<float>(cell_y) + random.Uniform()) * grid.cell);
     z.push_back((static_cast<float>(cell_z) + random.Uniform()) * grid.cell);
   }
-  StepTaus(x, y, z, &depth);
+  DensityAt(x, y, z, &depth);
   const auto start = PhaseTimes::Clock::now();
   for (size_t i = 0; i < chosen.size(); ++i) grid.UpdateTau(chosen[i], depth[i]);
   if (grow) grid.RaiseNeighbours(kSolidTau, kWakeTau);

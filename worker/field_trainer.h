@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/base/thread_pool.h"
@@ -11,8 +12,10 @@
 #include "core/render/trained_field.h"
 #include "worker/rays/ray_batch.h"
 #include "worker/rays/ray_source.h"
+#include "worker/samplers/bin_sampler.h"
 #include "worker/step/field_step.h"
 #include "worker/step/step_priors.h"
+#include "worker/step/step_taus.h"
 #include "worker/train_options.h"
 
 namespace skyquilt::worker {
@@ -35,15 +38,23 @@ class FieldTrainer {
   void MeasureFootprints();
   // One step. progress: of the budget, 0..1, sets learning rate, distortion loss, priors and levels of the pyramid.
   StepResult Step(double progress, double learning_rate_scale);
-  // Samples the density of some free cells, then decides which cells are occupied. grow: also marks the cells around surfaces as occupied.
+  // Samples the density of some free cells, then decides which cells are occupied. grow: also marks the cells around surfaces as occupied. With a
+  // sampler of bins it does nothing.
   void UpdateOccupancy(bool grow);
+  // Null with the sampler "occupancy". Its proposals are part of the training's state.
+  BinSampler* sampler() { return sampler_ ? &*sampler_ : nullptr; }
+  // Finds the occupied cells at the end of a training that did not sample by cells, for those who render the field: those in which rays ended
+  // (BinSampler::MarkLit) and their neighbours, with the largest density at eight random places of each.
+  void FindOccupied();
   // Working time per phase (kPhaseNames) since construction in seconds, summed over threads.
   std::array<double, kPhases> PhaseSeconds() const { return times_.Seconds(); }
 
  private:
   void ObserveSamples();
+  // After a step with a sampler of bins: what it found along its rays.
+  void UseFoundWeights(double progress, double learning_rate);
   // Writes tau of one marching step at each position (unit frame, structure of arrays).
-  void StepTaus(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth);
+  void DensityAt(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, std::vector<float>* depth);
 
   render::TrainedField& target_;
   TrainOptions options_;
@@ -53,6 +64,7 @@ class FieldTrainer {
   PhaseTimes times_;
   field::HashField field_;
   field::OptimizerState state_;
+  std::optional<BinSampler> sampler_;
   RayDrawer drawer_;
   FieldStep step_;
   brightness::ResponseLearner* learner_;
@@ -60,6 +72,8 @@ class FieldTrainer {
   RaySource& source_;
   RayBatch batch_;
   int rays_per_step_ = 1024;
+  std::vector<StepTaus> evaluators_;  // per thread
+  std::vector<float> found_;          // weights of the last step's samples, for the sampler
 };
 
 }  // namespace skyquilt::worker

@@ -40,7 +40,19 @@ int64_t GoodState::Interval(int64_t parameters, int batch) {
   return (steps + FallGuard::kWindow - 1) / FallGuard::kWindow * FallGuard::kWindow;
 }
 
+std::span<const std::unique_ptr<ProposalNetwork>> GoodState::Proposals() const {
+  if (trainer_.sampler() == nullptr) return {};
+  return trainer_.sampler()->proposals();
+}
+
 void GoodState::Keep() {
+  const std::span<const std::unique_ptr<ProposalNetwork>> proposals = Proposals();
+  proposals_.resize(proposals.size());
+  proposal_optimizers_.resize(proposals.size());
+  for (size_t i = 0; i < proposals.size(); ++i) {
+    CopyInto(proposals[i]->parameters(), proposals_[i]);
+    CopyInto(proposals[i]->state(), proposal_optimizers_[i]);
+  }
   CopyInto(field_.parameters, parameters_);
   CopyInto(trainer_.state(), optimizer_);
   CopyInto(field_.occupancy.tau, tau_);
@@ -57,6 +69,11 @@ void GoodState::Keep() {
 }
 
 void GoodState::Restore() {
+  const std::span<const std::unique_ptr<ProposalNetwork>> proposals = Proposals();
+  for (size_t i = 0; i < proposals.size(); ++i) {
+    CopyInto(proposals_[i], proposals[i]->parameters());
+    CopyInto(proposal_optimizers_[i], proposals[i]->state());
+  }
   CopyInto(parameters_, field_.parameters);
   CopyInto(optimizer_, trainer_.state());
   CopyInto(tau_, field_.occupancy.tau);
@@ -74,6 +91,11 @@ void GoodState::Restore() {
 }
 
 void GoodState::Exchange() {
+  const std::span<const std::unique_ptr<ProposalNetwork>> proposals = Proposals();
+  for (size_t i = 0; i < proposals.size(); ++i) {
+    std::swap(proposals_[i], proposals[i]->parameters());
+    std::swap(proposal_optimizers_[i], proposals[i]->state());
+  }
   std::swap(parameters_, field_.parameters);
   std::swap(optimizer_, trainer_.state());
   std::swap(tau_, field_.occupancy.tau);

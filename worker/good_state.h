@@ -30,6 +30,7 @@ class GoodState {
 
  private:
   void Exchange();
+  std::span<const std::unique_ptr<ProposalNetwork>> Proposals() const;
 
   render::TrainedField& field_;
   FieldTrainer& trainer_;
@@ -41,6 +42,8 @@ class GoodState {
   std::vector<float> tau_;
   std::vector<bool> occupied_;
   std::vector<uint8_t> judged_;
+  std::vector<field::Parameters> proposals_;  // of a sampler
+  std::vector<field::OptimizerState> proposal_optimizers_;
   int rays_per_step_ = 0;
   brightness::LuminanceState luminance_;
   SessionRecord kept_record_;

@@ -8,10 +8,11 @@
 
 namespace skyquilt::worker {
 
-enum class Phase { kDraw, kEncode, kDensity, kColor, kContext, kCompose, kBackward, kScatter, kOptimise, kOccupancy };
-constexpr size_t kPhases = 10;
-constexpr std::array<const char*, kPhases> kPhaseNames = {"draw rays", "hash forward",     "density network", "colour network", "context",
-                                                          "compose",   "network backward", "hash backward",   "optimiser",      "occupancy"};
+enum class Phase { kDraw, kEncode, kDensity, kColor, kContext, kCompose, kBackward, kScatter, kOptimise, kOccupancy, kSampler };
+constexpr size_t kPhases = 11;
+constexpr std::array<const char*, kPhases> kPhaseNames = {"draw rays", "hash forward", "density network",  "colour network",
+                                                          "context",   "compose",      "network backward", "hash backward",
+                                                          "optimiser", "occupancy",    "sampler passes"};
 
 class PhaseTimes {
  public:

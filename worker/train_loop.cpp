@@ -63,7 +63,11 @@ bool TrainLoop::Run() {
     SaveIfDue();
   }
   if (!record_.ended_early && !good_.Empty() && guard_.EndsFallen()) EndAtBest();
-  MarkUnsampledCells();
+  if (trainer_.sampler() != nullptr) {
+    trainer_.FindOccupied();
+  } else {
+    MarkUnsampledCells();
+  }
   if (recent_.seconds > 0.0) Report(1.0);
   return true;
 }

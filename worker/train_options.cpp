@@ -1,6 +1,7 @@
 #include "worker/train_options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/errors.h"
@@ -27,6 +28,14 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
       {"sh_degree", &O::sh_degree, Range{1, 4}, "degree of the spherical harmonics of the viewing direction; 1: colour does not depend on it"},
       {"learning_rate", &O::learning_rate, Range{1e-6, 1}, "learning rate of Adam at the start"},
       {"final_learning_rate_share", &O::final_learning_rate_share, Range{1e-6, 1}, "learning rate at the end as a share of learning_rate"},
+      {"sampler", &O::sampler, Range::OneOf({"occupancy", "proposal", "stratified"}),
+       "how the samples of training rays are placed: occupancy (at even steps in occupied cells), or for comparison proposal (where two small "
+       "density "
+       "fields, which learn from the field, propose it) or stratified (a coarse pass, then a fine one where that found matter, as in NeRF)"},
+      {"ray_samples", &O::ray_samples, Range{2, 512},
+       "samples of a ray in each pass of the samplers proposal (one number per proposal field, then that of the field) and stratified (coarse, "
+       "fine), "
+       "such as [64, 64, 32]; empty: [64, 64, 32] and [64, 128]; does nothing with sampler = occupancy"},
       {"step_voxels", &O::step_voxels, Range{0.25, 16}, "distance between the samples of a ray in finest voxels"},
       {"stratified", &O::stratified, Range(),
        "true: the samples of a ray are shifted by a random part of a step, new for every ray; false: they are in the middle of the steps"},
@@ -67,6 +76,13 @@ void TrainOptions::Check(const std::string& section) const {
     if (usable || (may_be_empty && shares->empty())) continue;
     throw base::UsageError(section + "." + key +
                            " is not allowed: give one to four shares, of which at least one is above 0, such as [0.6, 0.2, 0.12, 0.08]");
+  }
+  const bool whole = std::all_of(ray_samples.begin(), ray_samples.end(), [](double n) { return n == std::floor(n); });
+  const bool passes = sampler == "stratified" ? ray_samples.size() == 2 : ray_samples.size() >= 2 && ray_samples.size() <= 4;
+  if (!ray_samples.empty() && !(whole && passes)) {
+    throw base::UsageError(section +
+                           ".ray_samples is not allowed: give whole numbers, two for the sampler stratified, such as [64, 128], and two to "
+                           "four for proposal, such as [64, 64, 32]");
   }
   if (levels * features % 4 != 0) {
     throw base::UsageError(section + ".levels = " + std::to_string(levels) + " is not allowed with " + section +

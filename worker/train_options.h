@@ -32,10 +32,12 @@ struct TrainOptions {
   double final_learning_rate_share = 0.1;  // rate at the end divided by learning_rate
 
   // Rays and losses.
-  double step_voxels = 2.0;    // distance between the samples of a ray, in finest voxels
-  bool stratified = true;      // samples of a ray are shifted by a random part of a step
-  int multisample = 1;         // positions per sample: 1, 4 or 6; 0: samples are points, without footprint (core/render/footprint.h)
-  bool scale_features = true;  // the density network also sees the footprint's weight of every level
+  std::string sampler = "occupancy";     // worker/samplers/bin_sampler.h
+  std::vector<double> ray_samples = {};  // per pass of a sampler of bins; empty: its own numbers
+  double step_voxels = 2.0;              // distance between the samples of a ray, in finest voxels
+  bool stratified = true;                // samples of a ray are shifted by a random part of a step
+  int multisample = 1;                   // positions per sample: 1, 4 or 6; 0: samples are points, without footprint (core/render/footprint.h)
+  bool scale_features = true;            // the density network also sees the footprint's weight of every level
   // Shares of the rays from photos at 1, 1/2, 1/4 and 1/8 (worker/rays/photo_pyramid.h), and how they change.
   std::vector<double> pyramid = {0.6, 0.18, 0.11, 0.11};
   std::vector<double> pyramid_start = {0.9, 0.05, 0.025, 0.025};

@@ -157,7 +157,16 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
     for (int64_t s = 0; s < n; ++s)
       a.geometry_gradient[row * stride + static_cast<size_t>(s)] += more_geometry_gradient[row * stride + static_cast<size_t>(s)];
   }
-  // Density network.
+  DensityBackward(weights, a, features, feature_stride, n, network_gradient);
+}
+
+void HashField::DensityBackward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n,
+                                float* network_gradient) const {
+  const size_t stride = a.stride;
+  const int hidden = config_.hidden;
+  const auto gradient_of = [&](size_t layer) { return network_gradient + network_offsets_[layer]; };
+  float* current = a.hidden_gradient[0];
+  float* next = a.hidden_gradient[1];
   const auto density_hidden = [&](size_t layer) { return a.density_hidden + layer * static_cast<size_t>(hidden) * stride; };
   size_t below = DensityOutput() - 1;
   kernel::DenseWeightGradient(a.geometry_gradient, stride, kGeometryRows, density_hidden(below), stride, hidden, n, gradient_of(DensityOutput()));

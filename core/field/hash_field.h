@@ -149,6 +149,9 @@ class HashField {
   // added to the gradient of the geometry, such as those of NormalHeadBackward.
   void Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n, float* network_gradient,
                 const float* more_geometry_gradient = nullptr) const;
+  // The part of it for the density network, for fields that need no colour: a.geometry_gradient in, all kGeometryRows rows.
+  void DensityBackward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n,
+                       float* network_gradient) const;
   // The normal head's rows, before they are made unit vectors (UnitNormal in core/render/density_normal.h). n is a multiple of kernel::kPad; raw:
   // kNormalRows rows, the last zero. Only for fields with a head.
   void PredictNormals(const NetworkWeights& weights, const float* geometry, size_t geometry_stride, int64_t n, float* raw, size_t raw_stride) const;

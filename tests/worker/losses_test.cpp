@@ -6,6 +6,7 @@
 
 #include "tests/support/loss_check.h"
 #include "worker/losses/distortion_loss.h"
+#include "worker/losses/interlevel_loss.h"
 #include "worker/losses/loss.h"
 #include "worker/losses/normal_loss.h"
 #include "worker/losses/photo_loss.h"
@@ -200,14 +201,40 @@ TEST(Losses, SmoothnessLossOfAGroupHasItsGradient) {
 
 TEST(Losses, DistortionLossHasItsGradient) {
   const Inputs distance = {12.0, 12.5, 13.0, 14.5, 15.0};
+  const Inputs uneven = {0.1, 2.0, 1.0, 0.5, 3.0};
   DistortionScratch<double> scratch;
+  for (const double* steps : {static_cast<const double*>(nullptr), uneven.data()}) {
+    ExpectLossGradient(
+        [&](double weight, const Inputs& weights) {
+          CheckedLoss loss{0.0, Inputs(weights.size(), 0.0)};
+          loss.value = AddDistortionLoss(weight, weights.size(), weights.data(), distance.data(), 0.5, steps, 0.1, scratch, loss.gradient.data());
+          return loss;
+        },
+        {distance.size(), 0.0, 0.4});
+  }
+}
+
+TEST(Losses, DistortionOfOneSampleGrowsWithItsLength) {
+  DistortionScratch<double> scratch;
+  const double weight = 1.0, distance = 10.0, steps = 3.0;
+  double gradient = 0.0;
+  EXPECT_NEAR(AddDistortionLoss(1.0, 1, &weight, &distance, 0.5, &steps, 0.1, scratch, &gradient), 0.5 * 3.0 * 0.1 / 3.0, 1e-12);
+}
+
+// Of weights between the bounds of the field's: the loss and its gradient are zero where a proposal has at least the field's weight.
+TEST(Losses, InterlevelLossHasItsGradientWhereAProposalHasTooLittle) {
+  const std::vector<double> mass = {0.3, 0.05, 0.0, 0.4, 0.2};
   ExpectLossGradient(
       [&](double weight, const Inputs& weights) {
         CheckedLoss loss{0.0, Inputs(weights.size(), 0.0)};
-        loss.value = AddDistortionLoss(weight, weights.size(), weights.data(), distance.data(), 0.5, 0.1, scratch, loss.gradient.data());
+        loss.value = AddInterlevelLoss(weight, weights.size(), mass.data(), weights.data(), loss.gradient.data());
         return loss;
       },
-      {distance.size(), 0.0, 0.4});
+      {mass.size(), 0.06, 0.29});
+  const Inputs enough = {0.3, 0.06, 0.0, 0.5, 0.2};
+  Inputs gradient(enough.size(), 0.0);
+  EXPECT_EQ(AddInterlevelLoss(1.0, mass.size(), mass.data(), enough.data(), gradient.data()), 0.0);
+  EXPECT_EQ(gradient, Inputs(enough.size(), 0.0));
 }
 
 }  // namespace

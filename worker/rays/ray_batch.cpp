@@ -116,58 +116,105 @@ void RayDrawer::Group::MakeRoom(size_t samples, int points) {
   cell.resize(size);
 }
 
+class RayDrawer::SampleWriter {
+ public:
+  SampleWriter(const render::TrainedField& target, const PixelRay& ray, size_t most, base::Random& random, Group& group)
+      : target_(target),
+        ray_(ray),
+        points_(std::max(1, target.config.multisample)),
+        cone_axis_{.origin_enu = ray.origin_enu, .direction_enu = ray.direction_enu, .pixel_pitch = ray.pixel_pitch},
+        cone_(target.map, cone_axis_, points_),
+        observing_(kLeastSharpnessToObserve * static_cast<float>(target.config.grid.finest_resolution)),
+        per_step_(1.0 / target.step_m),
+        random_(random),
+        group_(group),
+        at_(group.count),
+        end_(group.count + most) {
+    group.MakeRoom(most, points_);
+  }
+  const render::Ray& axis() const { return cone_axis_; }
+  int64_t count() const { return static_cast<int64_t>(at_ - group_.count); }
+
+  // False when there is no room for more.
+  bool operator()(double t, double length, double unit_length, int64_t cell) {
+    const double width_m = cone_axis_.Footprint(t);
+    render::Turn turn;
+    if (points_ > 1) {
+      turn.angle = 2.0 * std::numbers::pi * static_cast<double>(random_.Uniform());
+      turn.reversed = random_.Uniform() < 0.5F;
+    }
+    const size_t first = at_ * static_cast<size_t>(points_);
+    cone_.Positions(t, length, width_m, turn, &group_.x[first], &group_.y[first], &group_.z[first], 1);
+    group_.t[at_] = static_cast<float>(t);
+    group_.unit_length[at_] = static_cast<float>(unit_length * per_step_);
+    group_.cell[at_] = static_cast<int32_t>(cell);
+    if (target_.config.Cones()) {
+      const float sharpness = render::SharpnessOf(width_m, target_.map.VolumeScale(ray_.origin_enu + t * ray_.direction_enu), points_);
+      group_.sharpness[at_] = sharpness;
+      if (sharpness < observing_) {
+        const double shares_z = random_.UniformDouble(), shares_y = random_.UniformDouble(), shares_x = random_.UniformDouble();
+        const Eigen::Vector3d shares(shares_x, shares_y, shares_z);
+        const Eigen::Vector3f place = cone_.Within(t, length, width_m, shares);
+        group_.cell[at_] = ~static_cast<int32_t>(target_.occupancy.IndexAt(place.x(), place.y(), place.z()));
+      }
+    }
+    return ++at_ < end_;
+  }
+
+ private:
+  const render::TrainedField& target_;
+  const PixelRay& ray_;
+  int points_;
+  render::Ray cone_axis_;
+  render::Cone cone_;
+  float observing_;
+  double per_step_;
+  base::Random& random_;
+  Group& group_;
+  size_t at_, end_;
+};
+
 void RayDrawer::AddRay(BatchRay r, base::Random& random, Group& group) const {
   const float drawn = random.Uniform();
   const float jitter = stratified_ ? drawn : 0.5F;
   for (float& channel : r.background) channel = random.Uniform();
   const geo::Interval interval = render::FieldInterval(target_.map, r.ray.origin_enu, r.ray.direction_enu);
   if (interval.Empty()) return;
-  const field::FieldConfig& config = target_.config;
-  const bool cones = config.Cones();
-  const int points = std::max(1, config.multisample);
-  const render::Ray cone_axis{.origin_enu = r.ray.origin_enu, .direction_enu = r.ray.direction_enu, .pixel_pitch = r.ray.pixel_pitch};
-  const render::Cone cone(target_.map, cone_axis, points);
-  group.MakeRoom(kMaxRaySamples, points);
-  size_t at = group.count;
-  const size_t end = at + kMaxRaySamples;
-  const double per_step = 1.0 / target_.step_m;
-  const float observing = kLeastSharpnessToObserve * static_cast<float>(config.grid.finest_resolution);
-  const auto emit = [&](double t, double length, double unit_length, int64_t cell) {
-    const double width_m = cone_axis.Footprint(t);
-    render::Turn turn;
-    if (points > 1) {
-      turn.angle = 2.0 * std::numbers::pi * static_cast<double>(random.Uniform());
-      turn.reversed = random.Uniform() < 0.5F;
-    }
-    const size_t first = at * static_cast<size_t>(points);
-    cone.Positions(t, length, width_m, turn, &group.x[first], &group.y[first], &group.z[first], 1);
-    group.t[at] = static_cast<float>(t);
-    group.unit_length[at] = static_cast<float>(unit_length * per_step);
-    group.cell[at] = static_cast<int32_t>(cell);
-    if (cones) {
-      const float sharpness = render::SharpnessOf(width_m, target_.map.VolumeScale(r.ray.origin_enu + t * r.ray.direction_enu), points);
-      group.sharpness[at] = sharpness;
-      if (sharpness < observing) {
-        const double shares_z = random.UniformDouble(), shares_y = random.UniformDouble(), shares_x = random.UniformDouble();
-        const Eigen::Vector3d shares(shares_x, shares_y, shares_z);
-        const Eigen::Vector3f place = cone.Within(t, length, width_m, shares);
-        group.cell[at] = ~static_cast<int32_t>(target_.occupancy.IndexAt(place.x(), place.y(), place.z()));
-      }
-    }
-    return ++at < end;
-  };
+  if (sampler_ != nullptr) {
+    group.binned.push_back({r.ray.origin_enu, r.ray.direction_enu, interval});
+    group.rays.push_back(r);
+    return;
+  }
+  SampleWriter emit(target_, r.ray, kMaxRaySamples, random, group);
   // A concealing field may dim by every sample that light passes, so their number must not depend on the photo's size.
-  const bool may_step_far = cones && r.ray.level > 0 && neighbours_ == Neighbours::kNone;
-  const double coarse_step_m = may_step_far ? kCoarsePixelsPerStep * cone_axis.Footprint(interval.t_near) : 0.0;
+  const bool may_step_far = target_.config.Cones() && r.ray.level > 0 && neighbours_ == Neighbours::kNone;
+  const double coarse_step_m = may_step_far ? kCoarsePixelsPerStep * emit.axis().Footprint(interval.t_near) : 0.0;
   if (coarse_step_m > 1.01 * target_.step_m) {
     render::MarchCoarse(target_, r.ray.origin_enu, r.ray.direction_enu, interval, coarse_step_m, jitter,
                         [&](double t, double length, double unit_length) { return emit(t, length, unit_length, kNoCell); });
   } else {
     render::March(target_, r.ray.origin_enu, r.ray.direction_enu, interval, target_.step_m, jitter, emit);
   }
-  r.count = static_cast<int64_t>(at - group.count);
-  group.count = at;
+  r.count = emit.count();
+  group.count += static_cast<size_t>(r.count);
   group.rays.push_back(r);
+}
+
+void RayDrawer::AddBins(int64_t task, base::Random& random, int thread, Group& group) const {
+  const std::span<const float> edges = sampler_->Place(task, group.binned, random, thread);
+  const auto bins = static_cast<size_t>(sampler_->LastBins());
+  for (size_t i = 0; i < group.rays.size(); ++i) {
+    BatchRay& r = group.rays[i];
+    SampleWriter emit(target_, r.ray, bins, random, group);
+    const RayPlaces places(target_, group.binned[i]);
+    const float* const edge = edges.data() + i * (bins + 1);
+    for (size_t k = 0; k < bins; ++k) {
+      const RayPlaces::Bin bin = places.Of(static_cast<double>(edge[k]), static_cast<double>(edge[k + 1]));
+      emit(bin.t, bin.length_m, bin.unit_length_m, kNoCell);
+    }
+    r.count = emit.count();
+    group.count += bins;
+  }
 }
 
 int RayDrawer::AddPriorRays(const PriorRays& priors, int64_t task, base::Random& random, Group& group) const {
@@ -193,13 +240,18 @@ int RayDrawer::AddPriorRays(const PriorRays& priors, int64_t task, base::Random&
   return n_segments * kSegmentRays + n_points;
 }
 
+int64_t RayDrawer::Groups(int n_rays) {
+  return (n_rays + kGroupRays - 1) / kGroupRays;
+}
+
 void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, const PriorRays& priors, RayBatch* batch) {
-  const int n_groups = (n_rays + kGroupRays - 1) / kGroupRays;
+  const int64_t n_groups = Groups(n_rays);
   groups_.resize(static_cast<size_t>(n_groups));
   threads_.ParallelFor(n_groups, [&](int64_t task, int thread) {
-    const auto start = PhaseTimes::Clock::now();
+    auto start = PhaseTimes::Clock::now();
     Group& group = groups_[static_cast<size_t>(task)];
     group.rays.clear();
+    group.binned.clear();
     group.count = 0;
     base::Random random(MixSeed(seed_, static_cast<uint64_t>(step), static_cast<uint64_t>(task)), kRayStream);
     PixelRay patch[kPatchPixels];
@@ -213,11 +265,15 @@ void RayDrawer::Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyra
         AddRay(r, random, group);
       }
     }
-    times_.Add(thread, Phase::kDraw, start);
+    start = times_.Add(thread, Phase::kDraw, start);
+    if (sampler_ == nullptr) return;
+    AddBins(task, random, thread, group);
+    times_.Add(thread, Phase::kSampler, start);
   });
   const auto start = PhaseTimes::Clock::now();
   const int points = std::max(1, target_.config.multisample);
   batch->Clear(points);
+  batch->uneven = sampler_ != nullptr;
   for (const Group& group : groups_) {
     size_t at = 0;
     for (size_t i = 0; i < group.rays.size(); ++i) {

@@ -11,6 +11,7 @@
 #include "worker/phase_times.h"
 #include "worker/rays/depth_points.h"
 #include "worker/rays/ray_source.h"
+#include "worker/samplers/bin_sampler.h"
 
 namespace skyquilt::worker {
 
@@ -40,6 +41,7 @@ struct RayBatch {
   std::vector<float> sharpness;    // of the footprints (kernel::Positions); not used without cones
   std::vector<float> t;            // metres from the camera
   std::vector<float> unit_length;  // length of the interval in marching steps
+  bool uneven = false;             // whether these lengths are all different: those of bins
   // Index in the occupancy grid. Negative: ~cell is one, drawn at random, of the cells that the sample stands for; it is too coarse to tell them
   // apart.
   std::vector<int32_t> cell;
@@ -80,14 +82,25 @@ struct PriorRays {
   double point_share = 0.0;
 };
 
-// Draws the pixels of a batch and samples their rays in occupied cells. A pure function of (seed, step) for any number of threads.
+// Draws the pixels of a batch and samples their rays: in occupied cells, or where a BinSampler places their samples. A pure function of (seed, step)
+// and the fields for any number of threads.
 class RayDrawer {
  public:
-  // stratified: true: a ray's samples are shifted by a random part of a step; false: they are in the middle of the steps.
-  RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, Neighbours neighbours, bool stratified,
+  // stratified: true: a ray's samples are shifted by a random part of a step; false: they are in the middle of the steps. sampler: null: occupied
+  // cells. References must outlive it.
+  RayDrawer(const render::TrainedField& target, const RaySource& source, uint64_t seed, Neighbours neighbours, bool stratified, BinSampler* sampler,
             base::ThreadPool& threads, PhaseTimes& times)
-      : target_(target), source_(source), seed_(seed), neighbours_(neighbours), stratified_(stratified), threads_(threads), times_(times) {}
-  // About n_rays rays: masked pixels and rays that miss the field are left out.
+      : target_(target),
+        source_(source),
+        seed_(seed),
+        neighbours_(neighbours),
+        stratified_(stratified),
+        sampler_(sampler),
+        threads_(threads),
+        times_(times) {}
+  // Groups into which about n_rays rays are divided.
+  static int64_t Groups(int n_rays);
+  // About n_rays rays: masked pixels and rays that miss the field are left out. After BinSampler::Begin for Groups(n_rays).
   void Draw(int64_t step, int n_rays, int feature_rows, const PhotoPyramid& pyramid, const PriorRays& priors, RayBatch* batch);
 
  private:
@@ -98,9 +111,14 @@ class RayDrawer {
     std::vector<float> x, y, z, sharpness, t, unit_length;
     std::vector<int32_t> cell;
     size_t count = 0;
+    std::vector<BinnedRay> binned;  // of the rays, for a sampler of bins
     void MakeRoom(size_t samples, int points);
   };
+  // Appends the samples of one ray to the group.
+  class SampleWriter;
   void AddRay(BatchRay r, base::Random& random, Group& group) const;
+  // Where all rays of the group are known: places their samples.
+  void AddBins(int64_t task, base::Random& random, int thread, Group& group) const;
   // Returns the number of rays drawn.
   int AddPriorRays(const PriorRays& priors, int64_t task, base::Random& random, Group& group) const;
   const render::TrainedField& target_;
@@ -108,6 +126,7 @@ class RayDrawer {
   uint64_t seed_;
   Neighbours neighbours_;
   bool stratified_;
+  BinSampler* sampler_;
   base::ThreadPool& threads_;
   PhaseTimes& times_;
   std::vector<Group> groups_;

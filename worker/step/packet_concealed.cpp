@@ -37,7 +37,7 @@ void PacketConcealed::Add(PacketSamples& s, float* network_gradient, LossSums& s
         sums.log_share += static_cast<double>(composed.log_share);
         ++sums.solid_rays;
       }
-      if (PacketDistortion::Wanted(s, k)) distortion_.Add(s, view, weight_gradient_.data(), sums);
+      if (PacketDistortion::Wanted(s, k)) distortion_.Add(s, k, weight_gradient_.data(), sums);
     }
     Scatter(s, view, composed, gradient);
   }

@@ -53,7 +53,14 @@ void PacketEnds::Find(const PacketSamples& s, LossSums& sums) {
   Grow(stops_, n);
   const float* t = s.Distances();
   const auto step_m = static_cast<float>(shared_.target.step_m);
-  for (size_t i = 0; i < n; ++i) stops_[i] = t[i] + step_m * (render::MeanStop(s.tau[i]) - 0.5F);
+  const RayBatch& batch = s.step->batch;
+  for (size_t k = 0; k < s.views.size(); ++k) {
+    const auto begin = static_cast<size_t>(s.views[k].begin), in_batch = static_cast<size_t>(s.Ray(k).begin);
+    for (size_t j = 0; j < static_cast<size_t>(s.views[k].count); ++j) {
+      const float length_m = batch.uneven ? step_m * batch.unit_length[in_batch + j] : step_m;
+      stops_[begin + j] = t[begin + j] + length_m * (render::MeanStop(s.tau[begin + j]) - 0.5F);
+    }
+  }
   distance_gradient_.assign(s.views.size(), 0.0F);
   ends_.assign(s.views.size(), {});
   const bool everywhere = priors.planes > 0.0 && priors.known_planes != nullptr;

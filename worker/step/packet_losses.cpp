@@ -4,11 +4,15 @@
 
 namespace skyquilt::worker {
 
-void PacketDistortion::Add(const PacketSamples& s, const RayView& view, float* weight_gradient, LossSums& sums) {
+void PacketDistortion::Add(const PacketSamples& s, size_t of_view, float* weight_gradient, LossSums& sums) {
+  const RayView& view = s.views[of_view];
+  const RayBatch& batch = s.step->batch;
+  // The live samples of a ray are its first ones.
+  const float* const steps = batch.uneven ? batch.unit_length.data() + s.Ray(of_view).begin : nullptr;
   const auto per_metre = static_cast<float>(1.0 / std::max(1.0, target_.map.max_enu().z() - target_.map.min_enu().z()));
   const float weight = static_cast<float>(s.step->distortion) * s.step->ray_share;
   const float loss = AddDistortionLoss(weight, static_cast<size_t>(view.count), s.weight.data() + view.begin, s.Distances() + view.begin,
-                                       static_cast<float>(target_.step_m), per_metre, scratch_, weight_gradient);
+                                       static_cast<float>(target_.step_m), steps, per_metre, scratch_, weight_gradient);
   sums.loss += static_cast<double>(loss) / static_cast<double>(s.step->ray_share);
 }
 
@@ -29,7 +33,7 @@ void PacketLosses::Add(PacketSamples& s, PacketEnds* ends, LossSums& sums) {
       const bool distorted = PacketDistortion::Wanted(s, k), at_end = ends != nullptr && ends->HasGradient(s, k);
       if (distorted || at_end) {
         weight_gradient_.assign(static_cast<size_t>(view.count), 0.0F);
-        if (distorted) distortion_.Add(s, view, weight_gradient_.data(), sums);
+        if (distorted) distortion_.Add(s, k, weight_gradient_.data(), sums);
         if (at_end) ends->AddGradient(s, k, weight_gradient_.data(), sums);
         weight_gradient = weight_gradient_.data();
       }

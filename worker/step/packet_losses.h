@@ -20,7 +20,7 @@ class PacketDistortion {
     return s.step->distortion > 0.0 && s.views[view].count > 0 && s.Ray(view).ray.level == 0;
   }
   // Adds the gradient by the weights of the ray's samples to weight_gradient.
-  void Add(const PacketSamples& s, const RayView& view, float* weight_gradient, LossSums& sums);
+  void Add(const PacketSamples& s, size_t of_view, float* weight_gradient, LossSums& sums);
 
  private:
   const render::TrainedField& target_;

@@ -198,9 +198,14 @@ KernelBenchResult RunKernelBench(const KernelBenchOptions& options) {
   result.train_flops = field::HashField(MakeField(options).config).TrainFlops();
   const int threads = options.threads > 0 ? options.threads : base::UsableCores();
   const int runs = threads > 1 ? 2 : 1;
-  base::Progress progress("bench kernel", 3.0 * options.rounds * runs, "figures");
+  base::Progress progress("bench kernel", 3.0 * options.rounds * runs + 1.0, "figures");
   result.all = MeasureSpeed(options, threads, progress);
   if (runs == 2) result.one_thread.push_back(MeasureSpeed(options, 1, progress));
+  base::ThreadPool pool(threads);
+  render::TrainedField field = MakeField(options);
+  field.parameters.Allocate(field::HashField(field.config));
+  result.samplers = MeasureSamplers(field, 0.25 * options.seconds, options.rounds, pool);
+  progress.Advance();
   progress.Finish();
   return result;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/bench_page.h"
+#include "bench/sampler_speed.h"
 #include "worker/phase_times.h"
 
 namespace skyquilt::bench {
@@ -53,6 +54,7 @@ struct KernelBenchResult {
   KernelSpeed all;                      // options.threads
   std::vector<KernelSpeed> one_thread;  // one entry when threads > 1: for the scaling
   double train_flops = 0.0;             // per sample
+  std::vector<SamplerSpeed> samplers;   // on all threads, of a field of this size
   // Speed-up by threads divided by the speed-up of the limit; 1 when only one thread is used.
   double ScalingFraction() const;
 };

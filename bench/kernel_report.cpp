@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -152,6 +153,36 @@ BenchSection PhaseSection(const KernelBenchResult& r) {
           .pictures = {}};
 }
 
+std::string PassesText(const SamplerSpeed& s) {
+  return fmt::format("{}", fmt::join(s.samples, " + "));
+}
+
+// The field itself sees the last of the samples.
+BenchSection SamplerSection(const KernelBenchResult& r) {
+  BenchTable table{.name = "samplers",
+                   .title = "",
+                   .note = "",
+                   .columns = {"sampler", "samples per pass", "rays placed", "rays learned", "share of a step's time"},
+                   .rows = {}};
+  for (const SamplerSpeed& s : r.samplers) {
+    const double learn_s = s.learn_rays_per_second > 0.0 ? 1.0 / s.learn_rays_per_second : 0.0;
+    const double sampler_s = 1.0 / s.place_rays_per_second + learn_s;
+    const double field_s = s.field_samples / r.all.train_samples_per_second;
+    const auto rate = [](double rays) { return BenchCell{page::FormatFixed(1e-3 * rays, 0, "k/s"), rays}; };
+    table.rows.push_back({BenchCell::Text(s.sampler), BenchCell::Text(PassesText(s)), rate(s.place_rays_per_second),
+                          learn_s > 0.0 ? rate(s.learn_rays_per_second) : BenchCell::Text(""),
+                          BenchCell::Percent(sampler_s / (sampler_s + field_s))});
+  }
+  return {.id = "samplers",
+          .title = "Samplers beside the occupancy grid",
+          .lead =
+              "Rays whose samples are placed by passes of their own, on all threads, and of proposals those from which they learn. The last pass is "
+              "the field's. The share is of a step in which proposals learn.",
+          .charts = {},
+          .tables = {table},
+          .pictures = {}};
+}
+
 BenchSection MachineSection(const KernelBenchResult& r) {
   const KernelBenchOptions& o = r.options;
   BenchTable table{
@@ -191,6 +222,10 @@ std::string KernelBenchJson(const KernelBenchResult& r) {
   if (!r.one_thread.empty()) {
     json["one_thread"] = SpeedJson(r.one_thread.front());
     json["scaling_fraction"] = r.ScalingFraction();
+  }
+  for (const SamplerSpeed& sampler : r.samplers) {
+    json["samplers"][sampler.sampler] = {{"samples", sampler.samples}, {"place_rays_per_second", sampler.place_rays_per_second}};
+    if (sampler.learn_rays_per_second > 0.0) json["samplers"][sampler.sampler]["learn_rays_per_second"] = sampler.learn_rays_per_second;
   }
   json["config"] = {{"levels", o.levels},
                     {"features", o.features},
@@ -240,6 +275,12 @@ std::string KernelBenchTable(const KernelBenchResult& r) {
   }
   row("waiting, bookkeeping", fmt::format("{:.1f} %", 100.0 * s.waiting_share),
       fmt::format("{:.0f} ns per sample", 1e9 * thread_s * s.waiting_share));
+  if (!r.samplers.empty()) text += "Samplers beside the occupancy grid:\n";
+  for (const SamplerSpeed& sampler : r.samplers) {
+    const std::string learned = sampler.learn_rays_per_second > 0.0 ? fmt::format(", {:.0f} k/s learned", 1e-3 * sampler.learn_rays_per_second) : "";
+    row(sampler.sampler, fmt::format("{:.0f} k rays/s", 1e-3 * sampler.place_rays_per_second),
+        "placed in passes of " + PassesText(sampler) + learned);
+  }
   return text;
 }
 
@@ -255,7 +296,7 @@ BenchPage KernelBenchPage(const KernelBenchResult& r, const std::string& command
                      page::FormatInteger(o.batch_samples), o.rounds, o.rounds == 1 ? "" : "s", o.seconds),
                  .figures = KernelFigures(r),
                  .verdicts = KernelVerdicts(r),
-                 .sections = {LimitSection(r), PhaseSection(r), MachineSection(r)},
+                 .sections = {LimitSection(r), PhaseSection(r), SamplerSection(r), MachineSection(r)},
                  .command = command,
                  .machine = base::MachineDescription(),
                  .date = base::UtcTimestamp()};

@@ -35,6 +35,7 @@ KernelBenchResult TwoThreads() {
   result.all = SpeedOf(2, 1.5e6, 2e6);
   result.one_thread = {SpeedOf(1, 0.8e6, 1e6)};
   result.train_flops = 56100.0;
+  result.samplers = {{"stratified", {64, 128}, 193, 2e5, 0.0}, {"proposal", {64, 64, 32}, 32, 1e5, 5e4}};
   return result;
 }
 
@@ -57,6 +58,12 @@ TEST(KernelBenchPage, HasTheFiguresOfTheJson) {
   EXPECT_EQ(limit.rows[0][2].value, json.at("roofline_train_samples_per_second"));
   EXPECT_EQ(limit.rows[0][3].value, json.at("roofline_fraction"));
   EXPECT_EQ(limit.rows[1][1].value, json.at("infer_samples_per_second"));
+  const BenchTable& samplers = TableOf(page, "samplers");
+  ASSERT_EQ(samplers.rows.size(), 2U);
+  EXPECT_EQ(samplers.rows[0][1].shown, "64 + 128");
+  EXPECT_EQ(samplers.rows[1][3].value, json.at("samplers").at("proposal").at("learn_rays_per_second"));
+  // 1 / 100 k + 1 / 50 k seconds a ray beside 32 samples at 1.5 M/s.
+  EXPECT_NEAR(samplers.rows[1][4].value, 30.0 / (30.0 + 32.0 / 1.5), 1e-9);
   EXPECT_EQ(limit.rows[1][2].value, json.at("roofline_infer_samples_per_second"));
   EXPECT_EQ(limit.rows[2][1].value, json.at("one_thread").at("train_samples_per_second"));
   const BenchTable& phases = TableOf(page, "phases");

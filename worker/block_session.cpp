@@ -101,6 +101,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   writer.Put("grid_moment2", state.grid_moment2);
   writer.Put("network_moment1", state.network_moment1);
   writer.Put("network_moment2", state.network_moment2);
+  trainer.codes().Put(writer);
   writer.SetAttribute("config_hash", job.config_hash);
   writer.SetAttribute("seed", static_cast<int64_t>(job.seed));
   writer.SetAttribute("rays_per_step", static_cast<int64_t>(trainer.rays_per_step()));
@@ -221,6 +222,7 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
   take(state.grid_moment2, reader.Floats("grid_moment2"), "grid_moment2");
   take(state.network_moment1, reader.Floats("network_moment1"), "network_moment1");
   take(state.network_moment2, reader.Floats("network_moment2"), "network_moment2");
+  trainer.codes().Get(reader, usable);
   if (extras != nullptr) {
     *extras->response = brightness::GetResponse(reader, usable);
     extras->learner->Get(reader, usable);

@@ -46,6 +46,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       drawer_(target, source, seed, NeighboursOf(luminance.luminance), options.stratified, threads, times_),
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
+      codes_(source.photos(), options.appearance_codes),
       priors_(priors),
       source_(source),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / 24)) {
@@ -93,7 +94,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   step.network_l2 = kNetworkL2;
   step.distortion = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
   brightness::ResponseLearner* learner = learner_ != nullptr && learner_->active() ? learner_ : nullptr;
-  const StepResult result = step_.Train(batch_, step, target_.parameters, state_, learner);
+  const StepResult result = step_.Train(batch_, step, target_.parameters, state_, learner, &codes_);
   if (learner != nullptr && result.finite) {
     learner->Step(progress);
     source_.UpdateExposures();
@@ -147,7 +148,7 @@ void FieldTrainer::StepTaus(const std::vector<float>& x, const std::vector<float
     for (int64_t s = 0; s < padded; s += field::kChunk) {
       const int64_t size = std::min<int64_t>(field::kChunk, padded - s);
       field_.Density(weights, features.data() + s, stride, size, hidden.data(), field::kChunkStride, geometry.data(), field::kChunkStride);
-      kernel::ExpShifted(geometry.data(), size, static_cast<float>(target_.config.density_bias), kMaxLogTau, geometry.data());
+      field_.StepTau(geometry.data(), size, kMaxLogTau, geometry.data());
       std::copy_n(geometry.begin(), std::min(size, count - s), depth->begin() + begin + s);
     }
     times_.Add(thread, Phase::kOccupancy, start);

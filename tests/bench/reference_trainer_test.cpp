@@ -49,6 +49,11 @@ void FillCodes(base::Random& random, SyntheticTrainer& trainer) {
   for (float& number : trainer.codes().state().codes) number = random.Uniform() - 0.5F;
 }
 
+// Samples of other lengths than one step, as at the far end of a ray and for wide pixels.
+void ChangeLengths(base::Random& random, worker::RayBatch* batch) {
+  for (float& length : batch->unit_length) length *= 0.5F + random.Uniform();
+}
+
 class ReferenceGradients : public ::testing::TestWithParam<Kind> {};
 
 TEST_P(ReferenceGradients, MatchFiniteDifferencesInDouble) {
@@ -60,7 +65,8 @@ TEST_P(ReferenceGradients, MatchFiniteDifferencesInDouble) {
   SyntheticRays rays = kMixedRays;
   rays.least_width_m = 0.05;
   rays.most_width_m = scene.edge_m;
-  const worker::RayBatch batch = trainer.Draw(rays, random);
+  worker::RayBatch batch = trainer.Draw(rays, random);
+  ChangeLengths(random, &batch);
   FillCodes(random, trainer);
   ReferenceState state = ReferenceState::From(trainer.state(), trainer.codes().state());
   for (double& value : state.grid) value = random.Uniform(-0.5, 0.5);  // large enough to matter
@@ -97,7 +103,8 @@ TEST_P(ReferenceGradients, AreTheWorkersWithHiddenSamples) {
   for (float& value : trainer.state().parameters.grid) value = 60.0F * (random.Uniform() - 0.5F);
   FillCodes(random, trainer);
   SyntheticRays rays{.rays = 150, .empty_share = 0.1F, .most_stops = 1.0F, .least_width_m = 0.05, .most_width_m = 1.0};
-  const worker::RayBatch batch = trainer.Draw(rays, random);
+  worker::RayBatch batch = trainer.Draw(rays, random);
+  ChangeLengths(random, &batch);
   ASSERT_GT(batch.packets.size(), 3U);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
   std::vector<double> grid, networks, codes;
@@ -224,7 +231,8 @@ TEST_P(ReferenceGradients, AreTheWorkersFromTheSameStart) {
   SyntheticRays rays = kMixedRays;
   rays.least_width_m = 0.05;
   rays.most_width_m = scene.edge_m;
-  const worker::RayBatch batch = trainer.Draw(rays, random);
+  worker::RayBatch batch = trainer.Draw(rays, random);
+  ChangeLengths(random, &batch);
   std::vector<double> grid, networks, codes;
   const ReferenceResult exact =
       reference.Gradient(batch, ReferenceState::From(trainer.state(), trainer.codes().state()), 1e-2, &grid, &networks, &codes);

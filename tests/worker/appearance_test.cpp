@@ -149,6 +149,28 @@ TEST_F(AppearanceTest, KilledItIsResumedWithTheSameBits) {
   EXPECT_EQ(AllBytes("killed.h5"), AllBytes("whole.h5"));
 }
 
+// After the fall nothing learns any more: what is left is the state that it was taken back to, which another training reaches without a fall.
+TEST_F(AppearanceTest, AFallTakesTheCodesBack) {
+  ASSERT_TRUE(Context(CodedJob("context.h5", 120)).ok);
+  TrainJob falling = CodedJob("falling.h5", 600);
+  int64_t farthest = -1;
+  falling.rate_fault = [&farthest](int64_t step) {
+    const bool again = step <= farthest;
+    farthest = again ? 600 : std::max(farthest, step);
+    return again ? 0.0 : step >= 400 ? 100.0 : 1.0;
+  };
+  const TrainResult fallen = Block(falling);
+  ASSERT_EQ(fallen.falls.size(), 1U);
+  const int64_t good = fallen.falls.front().restored_step;
+  TrainJob still = CodedJob("still.h5", 600);
+  still.rate_fault = [good](int64_t step) { return step < good ? 1.0 : 0.0; };
+  ASSERT_TRUE(Block(still).falls.empty());
+  EXPECT_EQ(Array("falling.h5", "networks"), Array("still.h5", "networks"));
+  const std::vector<float> codes = Array("falling.h5", "appearance/codes"), expected = Array("still.h5", "appearance/codes");
+  ASSERT_EQ(codes.size(), expected.size());
+  for (size_t i = 0; i < codes.size(); ++i) EXPECT_NEAR(codes[i], expected[i], 1e-6F) << i;
+}
+
 TEST_F(AppearanceTest, ACheckpointWithoutCodesHasNoneOfTheirArrays) {
   ASSERT_TRUE(Context(Job("context.h5", 20)).ok);
   const checkpoint::ArchiveReader reader(folder_ / "context.h5");

@@ -63,7 +63,7 @@ class ReferenceField {
   std::vector<Corner> Corners(int level, const Place& place) const;
   void AddCorners(int level, const std::array<double, 3>& position, double share, std::vector<Corner>* corners) const;
   // First input of the colour network that is the code.
-  size_t FirstCode() const { return static_cast<size_t>(field::kGeometryRows + (field_.config().sh_degree * field_.config().sh_degree + 3) / 4 * 4); }
+  size_t FirstCode() const { return static_cast<size_t>(field_.AppearanceRow()); }
   static std::vector<double> Apply(const Layer& layer, std::span<const double> networks, const std::vector<double>& in);
 
   const field::HashField& field_;

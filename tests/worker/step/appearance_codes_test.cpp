@@ -96,8 +96,8 @@ class AppearanceFile : public ::testing::Test {
   }
   static void Train(int step, AppearanceCodes& codes) {
     for (const int photo : {0, step % 3}) {
-      std::vector<float> gradient;
-      for (int k = 0; k < 5; ++k) gradient.push_back(std::sin(static_cast<float>(3 * step + 7 * k + photo)));
+      std::vector<float> gradient(5);
+      for (size_t k = 0; k < 5; ++k) gradient[k] = std::sin(static_cast<float>(3 * step + photo) + 7.0F * static_cast<float>(k));
       codes.Add(photo, gradient.data());
     }
     codes.Step(0.03);

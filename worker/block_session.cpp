@@ -125,6 +125,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
   for (size_t i = 0; trainer.sampler() != nullptr && i < trainer.sampler()->proposals().size(); ++i) {
     writer.SetAttribute(ProposalName(i, "steps"), trainer.sampler()->proposals()[i]->state().step);
   }
+  trainer.codes().Put(writer);
   writer.SetAttribute("config_hash", job.config_hash);
   writer.SetAttribute("seed", static_cast<int64_t>(job.seed));
   writer.SetAttribute("rays_per_step", static_cast<int64_t>(trainer.rays_per_step()));
@@ -248,6 +249,7 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
   for (size_t i = 0; trainer.sampler() != nullptr && i < trainer.sampler()->proposals().size(); ++i) {
     trainer.sampler()->proposals()[i]->state().step = reader.IntAttribute(ProposalName(i, "steps"));
   }
+  trainer.codes().Get(reader, usable);
   if (extras != nullptr) {
     *extras->response = brightness::GetResponse(reader, usable);
     extras->learner->Get(reader, usable);

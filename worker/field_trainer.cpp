@@ -57,6 +57,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       drawer_(target, source, seed, NeighboursOf(luminance.luminance), options.stratified, sampler(), threads, times_),
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
+      codes_(source.photos(), options.appearance_codes),
       priors_(priors),
       source_(source),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / (sampler_ ? sampler_->LastBins() : 24))),
@@ -108,7 +109,7 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   step.network_l2 = kNetworkL2;
   step.distortion = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
   brightness::ResponseLearner* learner = learner_ != nullptr && learner_->active() ? learner_ : nullptr;
-  const StepResult result = step_.Train(batch_, step, target_.parameters, state_, learner);
+  const StepResult result = step_.Train(batch_, step, target_.parameters, state_, learner, &codes_);
   if (learner != nullptr && result.finite) {
     learner->Step(progress);
     source_.UpdateExposures();

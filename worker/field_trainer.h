@@ -30,6 +30,7 @@ class FieldTrainer {
   field::OptimizerState& state() { return state_; }
   int& rays_per_step() { return rays_per_step_; }
   brightness::LuminanceState& luminance_state() { return step_.luminance_state(); }
+  AppearanceCodes& codes() { return codes_; }
   // Call it when the photos' response was changed from outside.
   void UpdateExposures() { source_.UpdateExposures(); }
   void InitializeParameters();
@@ -68,6 +69,7 @@ class FieldTrainer {
   RayDrawer drawer_;
   FieldStep step_;
   brightness::ResponseLearner* learner_;
+  AppearanceCodes codes_;
   FieldPriors priors_;
   RaySource& source_;
   RayBatch batch_;

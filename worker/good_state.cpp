@@ -60,6 +60,7 @@ void GoodState::Keep() {
   CopyInto(field_.occupancy.judged, judged_);
   rays_per_step_ = trainer_.rays_per_step();
   luminance_ = trainer_.luminance_state();
+  codes_ = trainer_.codes().state();
   kept_record_ = record_;
   if (extras_ != nullptr) {
     response_ = *extras_->response;
@@ -81,6 +82,7 @@ void GoodState::Restore() {
   CopyInto(judged_, field_.occupancy.judged);
   trainer_.rays_per_step() = rays_per_step_;
   trainer_.luminance_state() = luminance_;
+  trainer_.codes().state() = codes_;
   record_.mean_squared_error = kept_record_.mean_squared_error;
   record_.guard = kept_record_.guard;
   if (extras_ != nullptr) {
@@ -103,6 +105,7 @@ void GoodState::Exchange() {
   std::swap(judged_, field_.occupancy.judged);
   std::swap(rays_per_step_, trainer_.rays_per_step());
   std::swap(luminance_, trainer_.luminance_state());
+  std::swap(codes_, trainer_.codes().state());
   std::swap(kept_record_, record_);
   if (extras_ != nullptr) {
     std::swap(response_, *extras_->response);

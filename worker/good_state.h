@@ -46,6 +46,7 @@ class GoodState {
   std::vector<field::OptimizerState> proposal_optimizers_;
   int rays_per_step_ = 0;
   brightness::LuminanceState luminance_;
+  AppearanceCodes::State codes_;
   SessionRecord kept_record_;
   brightness::Response response_;
   brightness::ResponseLearner::Moments moments_;

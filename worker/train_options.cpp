@@ -24,8 +24,16 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
       {"base_resolution", &O::base_resolution, Range{1, 4096}, "cells along the longest edge at the coarsest level of the hash grid"},
       {"hidden", &O::hidden, Range{4, 256}.MultipleOf(4), "width of the hidden layers of both networks"},
       {"density_hidden_layers", &O::density_hidden_layers, Range{1, 8}, "hidden layers of the density network"},
+      {"density_activation", &O::density_activation, Range::OneOf({"exp", "softplus", "relu"}),
+       "how the density network's output becomes density: exp, or for comparison softplus (as mip-NeRF) or relu (as NeRF); all start with the same "
+       "density"},
       {"color_hidden_layers", &O::color_hidden_layers, Range{1, 3}, "hidden layers of the colour network"},
       {"sh_degree", &O::sh_degree, Range{1, 4}, "degree of the spherical harmonics of the viewing direction; 1: colour does not depend on it"},
+      {"appearance_codes", &O::appearance_codes, Range{0, 32},
+       "numbers of a code that is learned for every training photo and read by the colour network, so that photos of other light or weather need not "
+       "agree; renderings and held-out photos show the mean look. Codes can hide differences of exposure that brightness.correction would measure; "
+       "0: "
+       "off"},
       {"learning_rate", &O::learning_rate, Range{1e-6, 1}, "learning rate of Adam at the start"},
       {"final_learning_rate_share", &O::final_learning_rate_share, Range{1e-6, 1}, "learning rate at the end as a share of learning_rate"},
       {"sampler", &O::sampler, Range::OneOf({"occupancy", "proposal", "stratified"}),

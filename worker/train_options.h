@@ -24,8 +24,10 @@ struct TrainOptions {
   int base_resolution = 16;       // cells along the longest edge at the coarsest level; the finest one follows from the block's voxel size
   int hidden = 64;                // width of the hidden layers of both networks
   int density_hidden_layers = 1;
+  std::string density_activation = "exp";  // exp, softplus or relu (core/field/density_activation.h)
   int color_hidden_layers = 1;
-  int sh_degree = 3;  // of the spherical harmonics of the viewing direction; 1: colour does not depend on it
+  int sh_degree = 3;         // of the spherical harmonics of the viewing direction; 1: colour does not depend on it
+  int appearance_codes = 0;  // numbers of the code of every training photo (worker/step/appearance_codes.h); 0: off
 
   // Adam. The rate rises over the first 50 steps, then is constant, then falls geometrically.
   double learning_rate = 3e-2;             // highest rate

@@ -58,8 +58,10 @@ render::TrainedField MakeTarget(const TrainJob& job, const BlockSpec& spec, bool
   f.config.encoding = encoding::KindNamed(options.encoding);
   f.config.hidden = options.hidden;
   f.config.density_hidden_layers = options.density_hidden_layers;
+  f.config.density_activation = field::DensityActivationNamed(options.density_activation);
   f.config.color_hidden_layers = options.color_hidden_layers;
   f.config.sh_degree = options.sh_degree;
+  f.config.appearance = options.appearance_codes;
   f.config.color_range = ColorRange(*job.survey, response);
   if (learning) f.config.color_range = std::max(f.config.color_range, kLearnedRange);
   f.config.multisample = options.multisample;

@@ -143,10 +143,13 @@ ReferenceField::Sample ReferenceField::ForwardDensity(std::span<const double> gr
   return sample;
 }
 
-void ReferenceField::ForwardColor(std::span<const double> networks, const std::array<double, 3>& direction, Sample* sample) const {
+void ReferenceField::ForwardColor(std::span<const double> networks, const std::array<double, 3>& direction, std::span<const double> code,
+                                  Sample* sample) const {
   std::vector<double> in = sample->outputs[1];
   const std::vector<double> harmonics = ReferenceHarmonics(direction, field_.config().sh_degree);
   in.insert(in.end(), harmonics.begin(), harmonics.end());
+  in.resize(FirstCode(), 0.0);
+  in.insert(in.end(), code.begin(), code.end());
   in.resize(layers_[2].inputs, 0.0);
   for (size_t l = 2; l < layers_.size(); ++l) {
     sample->inputs.push_back(in);
@@ -159,12 +162,13 @@ void ReferenceField::ForwardColor(std::span<const double> networks, const std::a
 ReferenceField::Sample ReferenceField::Forward(std::span<const double> grid, std::span<const double> networks, const Place& place,
                                                const std::array<double, 3>& direction) const {
   Sample sample = ForwardDensity(grid, networks, place);
-  ForwardColor(networks, direction, &sample);
+  ForwardColor(networks, direction, {}, &sample);
   return sample;
 }
 
 void ReferenceField::Backward(std::span<const double> networks, const Sample& sample, double log_density_gradient,
-                              const std::array<double, 3>& raw_gradient, std::span<double> grid_gradient, std::span<double> network_gradient) const {
+                              const std::array<double, 3>& raw_gradient, std::span<double> grid_gradient, std::span<double> network_gradient,
+                              std::span<double> code_gradient) const {
   std::vector<double> gradient(layers_.back().outputs, 0.0);
   std::copy(raw_gradient.begin(), raw_gradient.end(), gradient.begin());
   for (size_t l = layers_.size(); l-- > 0;) {
@@ -182,6 +186,7 @@ void ReferenceField::Backward(std::span<const double> networks, const Sample& sa
         below[i] += gradient[o] * networks[layer.offset + o * layer.inputs + i];
       }
     }
+    for (size_t k = 0; l == 2 && k < code_gradient.size(); ++k) code_gradient[k] += below[FirstCode() + k];
     gradient = std::move(below);
   }
   const auto per_entry = static_cast<size_t>(field_.config().grid.features);

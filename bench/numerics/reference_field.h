@@ -42,10 +42,11 @@ class ReferenceField {
   Sample Forward(std::span<const double> grid, std::span<const double> networks, const Place& place, const std::array<double, 3>& direction) const;
   // The density only: the colour network is not evaluated, raw stays zero.
   Sample ForwardDensity(std::span<const double> grid, std::span<const double> networks, const Place& place) const;
-  void ForwardColor(std::span<const double> networks, const std::array<double, 3>& direction, Sample* sample) const;
-  // Adds to both gradients.
+  // code: of the photo's look; empty: zeros.
+  void ForwardColor(std::span<const double> networks, const std::array<double, 3>& direction, std::span<const double> code, Sample* sample) const;
+  // Adds to all gradients. code_gradient: as `code` of ForwardColor, and empty where that was.
   void Backward(std::span<const double> networks, const Sample& sample, double log_density_gradient, const std::array<double, 3>& raw_gradient,
-                std::span<double> grid_gradient, std::span<double> network_gradient) const;
+                std::span<double> grid_gradient, std::span<double> network_gradient, std::span<double> code_gradient) const;
 
  private:
   struct Layer {
@@ -61,6 +62,8 @@ class ReferenceField {
   // Entries that a sample reads of a level, with their shares of its feature: eight per position.
   std::vector<Corner> Corners(int level, const Place& place) const;
   void AddCorners(int level, const std::array<double, 3>& position, double share, std::vector<Corner>* corners) const;
+  // First input of the colour network that is the code.
+  size_t FirstCode() const { return static_cast<size_t>(field_.AppearanceRow()); }
   static std::vector<double> Apply(const Layer& layer, std::span<const double> networks, const std::vector<double>& in);
 
   const field::HashField& field_;

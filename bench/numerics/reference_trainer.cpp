@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace skyquilt::bench {
 namespace {
@@ -25,10 +26,30 @@ double ToSrgbSlope(double linear) {
   return linear <= 0.0031308 ? 12.92 : 1.055 / 2.4 * std::pow(linear, 1.0 / 2.4 - 1.0);
 }
 
+// The optical depth of one marching step and its derivative by the raw density; t0: that of an untrained field.
+struct StepDepth {
+  double tau = 0.0, slope = 0.0;
+};
+StepDepth DepthOf(double raw, const field::FieldConfig& config) {
+  const double t0 = std::exp(config.density_bias), most = std::exp(kMaxLogTau);
+  switch (config.density_activation) {
+    case field::DensityActivation::kSoftplus: {
+      const double grown = std::exp(raw) * std::expm1(t0);  // exp(raw + b)
+      return {std::min(most, std::log1p(grown)), grown / (1.0 + grown)};
+    }
+    case field::DensityActivation::kRelu:
+      return {std::clamp(raw + t0, 0.0, most), raw + t0 > 0.0 ? 1.0 : 0.0};
+    default: {
+      const double tau = std::exp(std::min(kMaxLogTau, raw + config.density_bias));
+      return {tau, tau};
+    }
+  }
+}
+
 // A sample of a ray that is not hidden.
 struct Lit {
   ReferenceField::Sample sample;
-  double tau = 0.0, weight = 0.0, mid = 0.0;
+  double tau = 0.0, slope = 0.0, weight = 0.0, mid = 0.0;
   std::array<double, 3> rgb = {};
 };
 
@@ -51,21 +72,28 @@ ReferenceField::Place PlaceOf(const kernel::Positions& at, size_t sample) {
   return place;
 }
 
-ReferenceState ReferenceState::From(const TrainingState& state) {
+ReferenceState ReferenceState::From(const TrainingState& state, const worker::AppearanceCodes::State& codes) {
   const auto doubled = [](const std::vector<float>& values) { return std::vector<double>(values.begin(), values.end()); };
-  return {doubled(state.parameters.grid),
-          doubled(state.parameters.networks),
-          doubled(state.moments.grid_moment1),
-          doubled(state.moments.grid_moment2),
-          doubled(state.moments.network_moment1),
-          doubled(state.moments.network_moment2),
-          state.moments.step};
+  return {.grid = doubled(state.parameters.grid),
+          .networks = doubled(state.parameters.networks),
+          .grid_moment1 = doubled(state.moments.grid_moment1),
+          .grid_moment2 = doubled(state.moments.grid_moment2),
+          .network_moment1 = doubled(state.moments.network_moment1),
+          .network_moment2 = doubled(state.moments.network_moment2),
+          .step = state.moments.step,
+          .codes = doubled(codes.codes),
+          .code_moment1 = doubled(codes.moment1),
+          .code_moment2 = doubled(codes.moment2),
+          .code_steps = codes.steps};
 }
 
 ReferenceTrainer::ReferenceTrainer(const render::TrainedField& target, const field::HashField& field) : target_(target), reference_(field) {}
 
 ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worker::BatchRay& ray, const ReferenceState& state, double ray_share,
-                                      double distortion, std::vector<double>* grid_gradient, std::vector<double>* network_gradient) const {
+                                      double distortion, std::vector<double>* grid_gradient, std::vector<double>* network_gradient,
+                                      std::vector<double>* code_gradient) const {
+  const size_t first_code = static_cast<size_t>(ray.ray.photo) * CodeNumbers();
+  const bool has_code = !state.codes.empty();
   const std::array<double, 3> direction = {ray.ray.direction_enu.x(), ray.ray.direction_enu.y(), ray.ray.direction_enu.z()};
   const double range = target_.config.color_range;
   const double per_height = 1.0 / std::max(1.0, target_.map.max_enu().z() - target_.map.min_enu().z());
@@ -75,9 +103,11 @@ ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worke
   for (auto s = static_cast<size_t>(ray.begin); s < static_cast<size_t>(ray.begin + ray.count) && passed < kHiddenBehind; ++s) {
     Lit one;
     one.sample = reference_.ForwardDensity(state.grid, state.networks, PlaceOf(at, s));
-    const double log_density = std::min(kMaxLogTau, one.sample.log_density + target_.config.density_bias);
-    one.tau = std::exp(log_density) * static_cast<double>(batch.unit_length[s]);
-    reference_.ForwardColor(state.networks, direction, &one.sample);
+    const StepDepth depth = DepthOf(one.sample.log_density, target_.config);
+    one.tau = depth.tau * static_cast<double>(batch.unit_length[s]);
+    one.slope = depth.slope * static_cast<double>(batch.unit_length[s]);
+    const auto code = has_code ? std::span(state.codes).subspan(first_code, CodeNumbers()) : std::span<const double>();
+    reference_.ForwardColor(state.networks, direction, code, &one.sample);
     for (size_t c = 0; c < 3; ++c) one.rgb[c] = range / (1.0 + std::exp(-one.sample.raw[c]));
     one.mid = (static_cast<double>(batch.t[s]) - static_cast<double>(batch.t[static_cast<size_t>(ray.begin)])) * per_height;
     passed += one.tau;
@@ -148,14 +178,17 @@ ReferenceResult ReferenceTrainer::Ray(const worker::RayBatch& batch, const worke
       const bool inwards = (rgb_gradient[c] > 0.0) == (lit[i].rgb[c] > 0.5 * range);
       raw_gradient[c] = rgb_gradient[c] * lit[i].weight * (inwards ? std::max(slope, kLeastSlope) : slope);
     }
-    const double denser = lit[i].tau > kNoDenserTau && tau_gradient < 0.0 ? 0.0 : tau_gradient * lit[i].tau;
-    reference_.Backward(state.networks, lit[i].sample, denser, raw_gradient, *grid_gradient, *network_gradient);
+    const double denser = lit[i].tau > kNoDenserTau && tau_gradient < 0.0 ? 0.0 : tau_gradient * lit[i].slope;
+    reference_.Backward(state.networks, lit[i].sample, denser, raw_gradient, *grid_gradient, *network_gradient,
+                        code_gradient != nullptr && has_code ? std::span(*code_gradient).subspan(first_code, CodeNumbers()) : std::span<double>());
   }
   return result;
 }
 
 ReferenceResult ReferenceTrainer::Gradient(const worker::RayBatch& batch, const ReferenceState& state, double distortion,
-                                           std::vector<double>* grid_gradient, std::vector<double>* network_gradient) const {
+                                           std::vector<double>* grid_gradient, std::vector<double>* network_gradient,
+                                           std::vector<double>* code_gradient) const {
+  if (code_gradient != nullptr) code_gradient->assign(state.codes.size(), 0.0);
   if (grid_gradient != nullptr) {
     grid_gradient->assign(state.grid.size(), 0.0);
     network_gradient->assign(state.networks.size(), 0.0);
@@ -164,7 +197,7 @@ ReferenceResult ReferenceTrainer::Gradient(const worker::RayBatch& batch, const 
   ReferenceResult sum;
   int64_t color_rays = 0;
   for (const worker::BatchRay& ray : batch.rays) {
-    const ReferenceResult one = Ray(batch, ray, state, ray_share, distortion, grid_gradient, network_gradient);
+    const ReferenceResult one = Ray(batch, ray, state, ray_share, distortion, grid_gradient, network_gradient, code_gradient);
     sum.loss += one.loss * ray_share;
     sum.squared_error += one.squared_error;
     sum.live += one.live;
@@ -175,8 +208,8 @@ ReferenceResult ReferenceTrainer::Gradient(const worker::RayBatch& batch, const 
 }
 
 ReferenceResult ReferenceTrainer::Step(const worker::RayBatch& batch, const worker::StepOptions& options, ReferenceState& state) const {
-  std::vector<double> grid_gradient, network_gradient;
-  const ReferenceResult result = Gradient(batch, state, options.distortion, &grid_gradient, &network_gradient);
+  std::vector<double> grid_gradient, network_gradient, code_gradient;
+  const ReferenceResult result = Gradient(batch, state, options.distortion, &grid_gradient, &network_gradient, &code_gradient);
   ++state.step;
   const auto t = static_cast<double>(state.step);
   const double correction1 = 1.0 - std::pow(0.9, t), correction2 = 1.0 - std::pow(0.99, t);
@@ -189,7 +222,35 @@ ReferenceResult ReferenceTrainer::Step(const worker::RayBatch& batch, const work
     if (grid_gradient[i] == 0.0) continue;
     Adam(options.learning_rate, correction1, correction2, grid_gradient[i], &state.grid[i], &state.grid_moment1[i], &state.grid_moment2[i]);
   }
+  if (!state.codes.empty()) StepCodes(batch, options.learning_rate, code_gradient, state);
   return result;
+}
+
+void ReferenceTrainer::StepCodes(const worker::RayBatch& batch, double learning_rate, const std::vector<double>& gradient,
+                                 ReferenceState& state) const {
+  std::set<size_t> drawn;
+  for (const worker::BatchRay& ray : batch.rays) {
+    if (!ray.ray.empty) drawn.insert(static_cast<size_t>(ray.ray.photo));
+  }
+  const size_t n = CodeNumbers();
+  for (const size_t photo : drawn) {
+    const auto t = static_cast<double>(++state.code_steps[photo]);
+    for (size_t i = photo * n; i < (photo + 1) * n; ++i) {
+      Adam(learning_rate, 1.0 - std::pow(0.9, t), 1.0 - std::pow(0.99, t), gradient[i], &state.codes[i], &state.code_moment1[i],
+           &state.code_moment2[i]);
+    }
+  }
+  for (size_t k = 0; k < n; ++k) {
+    double sum = 0.0, count = 0.0;
+    for (size_t photo = 0; photo < state.code_steps.size(); ++photo) {
+      if (state.code_steps[photo] == 0) continue;
+      sum += state.codes[photo * n + k];
+      count += 1.0;
+    }
+    for (size_t photo = 0; photo < state.code_steps.size(); ++photo) {
+      if (state.code_steps[photo] > 0) state.codes[photo * n + k] -= sum / count;
+    }
+  }
 }
 
 }  // namespace skyquilt::bench

@@ -50,6 +50,8 @@ render::TrainedField SyntheticField(const SyntheticOptions& options) {
   field.config.color_hidden_layers = options.color_hidden_layers;
   field.config.color_range = 1.4;
   field.config.density_bias = options.density_bias;
+  field.config.density_activation = options.density_activation;
+  field.config.appearance = options.appearance;
   field.config.multisample = options.multisample;
   field.config.normal_head = options.normal_head;
   field.config.scale_features = options.scale_features;
@@ -73,6 +75,7 @@ void DrawSyntheticBatch(const render::TrainedField& field, const SyntheticOption
     worker::BatchRay ray;
     ray.ray.direction_enu = (ground - camera).normalized();
     ray.ray.origin_enu = camera + scene.offset_enu;
+    ray.ray.photo = i % scene.photos;
     ray.ray.empty = random.Uniform() < rays.empty_share;
     const Eigen::Vector3d color = ShadeScene(camera, ray.ray.direction_enu);
     for (size_t c = 0; c < 3; ++c) {

@@ -26,6 +26,10 @@ struct SyntheticOptions {
   int multisample = 0;
   bool scale_features = false;
   bool normal_head = false;  // whether normals are predicted
+  // As train.density_activation and train.appearance_codes; photos: between which the rays are divided.
+  field::DensityActivation density_activation = field::DensityActivation::kExp;
+  int appearance = 0;
+  int photos = 5;
 };
 
 // A field over the scene with every occupancy cell on and without parameters.

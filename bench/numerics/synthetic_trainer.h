@@ -20,16 +20,18 @@ class SyntheticTrainer {
   const field::HashField& field() const { return field_; }
   const SyntheticOptions& scene() const { return scene_; }
   TrainingState& state() { return state_; }
+  worker::AppearanceCodes& codes() { return codes_; }
 
   worker::RayBatch Draw(const SyntheticRays& rays, base::Random& random) const;
   // The batch is copied, because training removes the positions of hidden samples.
   worker::StepResult Train(worker::RayBatch batch, const worker::StepOptions& options) {
-    return step_.Train(batch, options, state_.parameters, state_.moments, nullptr);
+    return step_.Train(batch, options, state_.parameters, state_.moments, nullptr, &codes_);
   }
   // Loss and gradients at the present parameters, which are not changed.
   struct Gradients {
     worker::StepResult result;
     std::vector<double> grid, networks;
+    std::vector<double> codes;  // [photo][number]
   };
   Gradients GradientsOf(worker::RayBatch batch, double distortion);
   // With these priors and without distortion loss.
@@ -44,6 +46,7 @@ class SyntheticTrainer {
   render::TrainedField target_;
   field::HashField field_;
   TrainingState state_;
+  worker::AppearanceCodes codes_;
   worker::FieldStep step_;
 };
 

@@ -31,10 +31,12 @@ CaseResult GradientFinding(const SyntheticOptions& scene, int steps_between) {
   for (int round = 0; round < 2; ++round) {
     const worker::RayBatch batch = trainer.Draw(kTrainerRays, random);
     const SyntheticTrainer::Gradients seen = trainer.GradientsOf(batch, kTrainerDistortion);
-    std::vector<double> grid, networks;
-    const ReferenceResult exact = reference.Gradient(batch, ReferenceState::From(trainer.state()), kTrainerDistortion, &grid, &networks);
+    std::vector<double> grid, networks, codes;
+    const ReferenceState state = ReferenceState::From(trainer.state(), trainer.codes().state());
+    const ReferenceResult exact = reference.Gradient(batch, state, kTrainerDistortion, &grid, &networks, &codes);
     worst.Take(RelativeDistance(seen.grid, grid));
     worst.Take(RelativeDistance(seen.networks, networks));
+    if (!codes.empty()) worst.Take(RelativeDistance(seen.codes, codes));
     worst_loss.Take(std::abs(seen.result.loss / exact.loss - 1.0));
     for (int step = 0; round == 0 && step < steps_between; ++step) {
       trainer.Train(trainer.Draw(kTrainerRays, random), {.learning_rate = 1e-2, .network_l2 = 1e-6, .distortion = kTrainerDistortion});
@@ -47,7 +49,7 @@ CaseResult GradientFinding(const SyntheticOptions& scene, int steps_between) {
 
 NumericCase GradientCase(const std::string& name, const SyntheticOptions& scene, int steps) {
   return {.name = name,
-          .expected = "loss to 10^-5; gradients of grid and networks, each as a vector, to 10^-4",
+          .expected = "loss to 10^-5; gradients of grid, networks and codes, each as a vector, to 10^-4",
           .unit = "relative",
           .limit = 1e-4,
           .run = [scene, steps] { return GradientFinding(scene, steps); }};
@@ -175,13 +177,16 @@ NumericGroup TrainerGroup(const NumericsOptions& options) {
   const auto keep = [curves](const Runs& runs, const std::string& name, bool emphasised) {
     curves->push_back({.name = name, .points = runs.parameters, .emphasised = emphasised});
   };
-  SyntheticOptions tiny, deep, fine;
+  SyntheticOptions tiny, deep, fine, softplus, relu, codes;
   tiny.log2_table_size = 1;
   deep.color_hidden_layers = 3;
   deep.features = 4;
   deep.hidden = 24;
   fine.voxel_m = 0.004;  // 2000 cells along an edge: positions within a cell lose eleven bits
   fine.log2_table_size = 14;
+  softplus.density_activation = field::DensityActivation::kSoftplus;
+  relu.density_activation = field::DensityActivation::kRelu;
+  codes.appearance = 5;
   NumericGroup group{
       .id = "trainer",
       .title = "Trainer",
@@ -194,6 +199,9 @@ NumericGroup TrainerGroup(const NumericsOptions& options) {
       GradientCase("Gradients, table of 2^1", tiny, steps),
       GradientCase("Gradients, four features and three colour layers", deep, steps),
       GradientCase("Gradients, 2000 cells along an edge", fine, std::min(steps, 20)),
+      GradientCase("Gradients, density by softplus", softplus, steps),
+      GradientCase("Gradients, density by relu", relu, steps),
+      GradientCase("Gradients, a code of five numbers per photo", codes, steps),
       {.name = "A batch of no rays", .expected = "loss 0, nothing changes", .unit = "loss", .limit = 0.0, .run = EmptyBatch},
       {.name = "A batch of one ray", .expected = "loss and gradients as the reference", .unit = "relative", .limit = 1e-4, .run = OneRay},
       {.name = fmt::format("{} steps of training", steps),

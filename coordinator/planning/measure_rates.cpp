@@ -53,6 +53,8 @@ render::TrainedField TrialField(const worker::TrainOptions& options) {
   field.config.hidden = options.hidden;
   field.config.color_hidden_layers = options.color_hidden_layers;
   field.config.sh_degree = options.sh_degree;
+  field.config.density_activation = field::DensityActivationNamed(options.density_activation);
+  field.config.appearance = options.appearance_codes;
   return field;
 }
 

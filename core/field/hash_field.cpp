@@ -26,12 +26,13 @@ HashField::HashField(const FieldConfig& config) : config_(config), encoding_(enc
   Require(config.multisample == 0 || config.multisample == 1 || config.multisample == 4 || config.multisample == 6,
           "multisample must be 0, 1, 4 or 6");
   Require(!config.scale_features || config.Cones(), "scale_features needs multisample");
+  Require(config.appearance >= 0 && config.appearance <= 32, "appearance must be 0..32");
   if (config.scale_features) scale_rows_ = kernel::PaddedRows(ScaledLevels());
-  color_inputs_ = kGeometryRows + kernel::PaddedRows(config.sh_degree * config.sh_degree);
+  raw_shift_ = static_cast<float>(RawShift(config.density_activation, config.density_bias));
   layers_.push_back({config.hidden, FeatureRows()});
   for (int l = 1; l < config.density_hidden_layers; ++l) layers_.push_back({config.hidden, config.hidden});
   layers_.push_back({kGeometryRows, config.hidden});
-  layers_.push_back({config.hidden, color_inputs_});
+  layers_.push_back({config.hidden, ColorInputRows()});
   for (int l = 1; l < config.color_hidden_layers; ++l) layers_.push_back({config.hidden, config.hidden});
   layers_.push_back({kColorRows, config.hidden});
   network_offsets_.push_back(0);
@@ -111,16 +112,34 @@ void HashField::Density(const NetworkWeights& weights, const float* features, si
   kernel::Dense(weights.layer[DensityOutput()].data(), kGeometryRows, config_.hidden, hidden, hidden_stride, n, false, geometry, geometry_stride);
 }
 
+void HashField::StepTau(const float* geometry, int64_t n, float max_log_tau, float* tau) const {
+  switch (config_.density_activation) {
+    case DensityActivation::kExp:
+      return kernel::ExpShifted(geometry, n, raw_shift_, max_log_tau, tau);
+    case DensityActivation::kSoftplus:
+      return kernel::SoftplusShifted(geometry, n, raw_shift_, std::exp(max_log_tau), tau);
+    case DensityActivation::kRelu:
+      return kernel::ReluShifted(geometry, n, raw_shift_, std::exp(max_log_tau), tau);
+  }
+}
+
 void HashField::EncodeDirection(const float direction[3], int64_t count, float* rows, size_t stride) const {
   float sh[16] = {};
   encoding::SphericalHarmonics(direction[0], direction[1], direction[2], config_.sh_degree, sh);
-  for (int k = 0; k < color_inputs_ - kGeometryRows; ++k) std::fill_n(rows + static_cast<size_t>(k) * stride, count, sh[k]);
+  const int directions = AppearanceRow() - kGeometryRows;
+  for (int k = 0; k < directions; ++k) std::fill_n(rows + static_cast<size_t>(k) * stride, count, sh[k]);
+  for (int k = directions; k < ColorInputRows() - kGeometryRows; ++k) std::fill_n(rows + static_cast<size_t>(k) * stride, count, 0.0F);
+}
+
+void HashField::EncodeAppearance(const float* code, int64_t count, float* rows, size_t stride) const {
+  const auto first = static_cast<size_t>(AppearanceRow() - kGeometryRows);
+  for (size_t k = 0; k < static_cast<size_t>(config_.appearance); ++k) std::fill_n(rows + (first + k) * stride, count, code[k]);
 }
 
 void HashField::Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
                       float* color_raw, size_t color_stride) const {
   const float* in = color_in;
-  int inputs = color_inputs_;
+  int inputs = ColorInputRows();
   for (int l = 0; l < config_.color_hidden_layers; ++l) {
     kernel::Dense(weights.layer[ColorInput() + static_cast<size_t>(l)].data(), config_.hidden, inputs, in, in_stride, n, true, hidden[l],
                   hidden_stride);
@@ -149,9 +168,13 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
     kernel::DenseGated(weights.transposed[layer].data(), hidden, hidden, current, stride, n, a.color_hidden[l - 1], stride, next, stride);
     std::swap(current, next);
   }
-  kernel::DenseWeightGradient(current, stride, hidden, a.color_in, stride, color_inputs_, n, gradient_of(ColorInput()));
-  // Only the geometry rows need a gradient: the direction has no parameters.
+  kernel::DenseWeightGradient(current, stride, hidden, a.color_in, stride, ColorInputRows(), n, gradient_of(ColorInput()));
+  // The direction has no parameters: its rows need no gradient.
   kernel::Dense(weights.transposed[ColorInput()].data(), kGeometryRows, hidden, current, stride, n, false, a.geometry_gradient, stride);
+  if (config_.appearance > 0) {
+    const float* by_code = weights.transposed[ColorInput()].data() + static_cast<ptrdiff_t>(AppearanceRow()) * hidden;
+    kernel::Dense(by_code, AppearanceRows(), hidden, current, stride, n, false, a.appearance_gradient, stride);
+  }
   for (int64_t s = 0; s < n; ++s) a.geometry_gradient[s] += a.log_density_gradient[s];
   for (size_t row = 0; more_geometry_gradient != nullptr && row < kGeometryRows; ++row) {
     for (int64_t s = 0; s < n; ++s)
@@ -184,7 +207,7 @@ void HashField::DensityBackward(const NetworkWeights& weights, Activations& a, f
 
 double HashField::ForwardFlops() const {
   const int hidden = config_.hidden;
-  const int color_inputs = kGeometryRows + config_.sh_degree * config_.sh_degree;
+  const int color_inputs = kGeometryRows + config_.sh_degree * config_.sh_degree + config_.appearance;
   return 2.0 * (FeatureRows() * hidden + (config_.density_hidden_layers - 1) * hidden * hidden + hidden * kGeometryRows + color_inputs * hidden +
                 (config_.color_hidden_layers - 1) * hidden * hidden + hidden * 3);
 }
@@ -201,9 +224,10 @@ void Activations::Reserve(const HashField& field, int64_t n) {
   const auto hidden = static_cast<size_t>(field.config().hidden);
   const auto color_rows = static_cast<size_t>(field.ColorInputRows());
   const auto color_layers = static_cast<size_t>(field.config().color_hidden_layers);
+  const auto code_rows = static_cast<size_t>(field.AppearanceRows());
   const auto density_rows = static_cast<size_t>(field.DensityHiddenRows());
   kept_rows = field.DensityHiddenRows() + kGeometryRows;
-  buffer_.assign(stride * (density_rows + color_rows + color_layers * hidden + 2 * kColorRows + 1 + kGeometryRows + 2 * hidden), 0.0F);
+  buffer_.assign(stride * (density_rows + color_rows + color_layers * hidden + 2 * kColorRows + 1 + kGeometryRows + code_rows + 2 * hidden), 0.0F);
   float* next = buffer_.data();
   const auto take = [&](size_t rows) { return std::exchange(next, next + rows * stride); };
   density_hidden = take(density_rows);
@@ -213,6 +237,7 @@ void Activations::Reserve(const HashField& field, int64_t n) {
   color_gradient = take(kColorRows);
   log_density_gradient = take(1);
   geometry_gradient = take(kGeometryRows);
+  if (code_rows > 0) appearance_gradient = take(code_rows);
   for (float*& gradient : hidden_gradient) gradient = take(hidden);
 }
 

@@ -1,9 +1,13 @@
 // A radiance field: the function from position and direction to density and colour. Encoding (hash grid or a baseline) -> density network -> colour
 // network with the direction in spherical harmonics:
 //   features = encoding(x)                                FeatureRows() rows
-//   geometry = W2 relu(W1 features)                       kGeometryRows rows, row 0 is the log density
-//   rgb      = range * sigmoid(W4 relu(W3 [geometry, SH(direction)]))
+//   geometry = W2 relu(W1 features)                       kGeometryRows rows, row 0 gives the density
+//   tau      = exp(geometry[0] + density_bias)            optical depth of one marching step; or softplus or relu (density_activation.h)
+//   rgb      = range * sigmoid(W4 relu(W3 [geometry, SH(direction), code]))
 // Both networks may have more than one hidden layer.
+// Row 0 of the geometry is called the log density; with exp it is that up to a constant, with the others density grows with it.
+// With `appearance` a code of so many numbers tells how one photo looks (Martin-Brualla et al. 2021, NeRF in the Wild, section 4.1). The caller has
+// the codes; the mean look, which renderings show, is a code of zeros.
 // W4 has a fourth row. With `luminance` it is the log luminance of the samples, from which a convolution of width 7 over neighbouring pixels computes
 // Omega (core/brightness/luminance.h); the taps and the bias of the convolution are the last parameters. Without `luminance` the row stays zero.
 // With `normal_head` a linear map of the geometry rows predicts a normal: its first three rows, in ENU out of the surface, of any length. Its
@@ -21,6 +25,7 @@
 
 #include "core/base/random.h"
 #include "core/encoding/encoding.h"
+#include "core/field/density_activation.h"
 
 namespace skyquilt::field {
 
@@ -42,10 +47,12 @@ struct FieldConfig {
   int sh_degree = 3;              // 1..4
   double color_range = 1.0;       // largest display value of a colour; > 1 leaves headroom for photos darker than the reference
   double density_bias = -5.0;     // log of the initial optical depth of one marching step
-  int multisample = 0;            // positions per sample (core/render/footprint.h): 1, 4 or 6; 0: samples are points without footprint
-  bool scale_features = false;    // whether the density network also sees how much its footprint leaves of the levels; not with points
-  bool luminance = false;         // whether the luminance row and its convolution are used
-  bool normal_head = false;       // whether normals are predicted
+  DensityActivation density_activation = DensityActivation::kExp;
+  int appearance = 0;           // numbers of an appearance code, 0..32; 0: colour depends on position and direction only
+  int multisample = 0;          // positions per sample (core/render/footprint.h): 1, 4 or 6; 0: samples are points without footprint
+  bool scale_features = false;  // whether the density network also sees how much its footprint leaves of the levels; not with points
+  bool luminance = false;       // whether the luminance row and its convolution are used
+  bool normal_head = false;     // whether normals are predicted
 
   bool Cones() const { return multisample > 0; }
 };
@@ -68,13 +75,14 @@ class Activations {
   size_t stride = 0;
   int kept_rows = 0;  // rows of density_hidden and geometry together
   float* density_hidden = nullptr;
-  float* color_in = nullptr;  // geometry, then spherical harmonics of the direction
+  float* color_in = nullptr;  // geometry, then spherical harmonics of the direction, then the appearance code
   float* color_hidden[3] = {nullptr, nullptr, nullptr};
   float* color_raw = nullptr;  // before the sigmoid
   // Gradients with respect to the rows of the same name; the log density is row 0 of geometry.
   float* color_gradient = nullptr;
   float* log_density_gradient = nullptr;
   float* geometry_gradient = nullptr;
+  float* appearance_gradient = nullptr;  // by the AppearanceRows() rows of color_in; null without codes
   float* hidden_gradient[2] = {nullptr, nullptr};
   float* geometry() const { return color_in; }
 
@@ -123,7 +131,11 @@ class HashField {
   int ScaledLevel(int row) const { return (config_.grid.levels - 1) % 2 + 2 * row; }
   // Rows of all hidden layers of the density network.
   int DensityHiddenRows() const { return config_.density_hidden_layers * config_.hidden; }
-  int ColorInputRows() const { return color_inputs_; }
+  // Rows of the colour network's input: geometry, directions, and AppearanceRows() of the code from row AppearanceRow() on, of which the last may be
+  // padding.
+  int ColorInputRows() const { return AppearanceRow() + AppearanceRows(); }
+  int AppearanceRow() const { return kGeometryRows + kernel::PaddedRows(config_.sh_degree * config_.sh_degree); }
+  int AppearanceRows() const { return kernel::PaddedRows(config_.appearance); }
 
   // Initial parameters: grid by Encoding::Initialize, networks Xavier uniform, luminance row and bias 0 with equal taps.
   void Initialize(base::Random& random, std::span<float> grid, std::span<float> networks) const;
@@ -138,15 +150,20 @@ class HashField {
   // Density network. n is a multiple of kernel::kPad. hidden: room for DensityHiddenRows() rows; geometry: kGeometryRows rows.
   void Density(const NetworkWeights& weights, const float* features, size_t feature_stride, int64_t n, float* hidden, size_t hidden_stride,
                float* geometry, size_t geometry_stride) const;
-  // Fills the direction's rows of the colour input, ColorInputRows() - kGeometryRows, with the spherical harmonics of one direction for `count`
-  // samples.
+  // The optical depth of one marching step from row 0 of the geometry, by the configuration's activation and at most exp(max_log_tau), max_log_tau <=
+  // kernel::kMaxExpLimit. n is a multiple of kernel::kPad. tau may be the same as `geometry`. NaN as in kernel::ExpShifted.
+  void StepTau(const float* geometry, int64_t n, float max_log_tau, float* tau) const;
+  // Fills the rows of the colour input after the geometry, ColorInputRows() - kGeometryRows, with the spherical harmonics of one direction for
+  // `count` samples, and with the code of the mean look, zeros.
   void EncodeDirection(const float direction[3], int64_t count, float* rows, size_t stride) const;
+  // After EncodeDirection, whose arguments `rows`, `count` and `stride` are: replaces these zeros by a code of config().appearance numbers.
+  void EncodeAppearance(const float* code, int64_t count, float* rows, size_t stride) const;
   // Colour network. color_in: ColorInputRows() rows, geometry first. hidden: one buffer of config().hidden rows per hidden layer.
   void Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
              float* color_raw, size_t color_stride) const;
   // Backward pass of Density and Color, whose activations are in `a`. Inputs: a.color_gradient, a.log_density_gradient, features. Replaces the
-  // encoding's features by their gradient and adds to network_gradient. more_geometry_gradient: null, or kGeometryRows rows of a.stride that are
-  // added to the gradient of the geometry, such as those of NormalHeadBackward.
+  // encoding's features by their gradient, writes a.appearance_gradient when there are codes, and adds to network_gradient. more_geometry_gradient:
+  // null, or kGeometryRows rows of a.stride that are added to the gradient of the geometry, such as those of NormalHeadBackward.
   void Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n, float* network_gradient,
                 const float* more_geometry_gradient = nullptr) const;
   // The part of it for the density network, for fields that need no colour: a.geometry_gradient in, all kGeometryRows rows.
@@ -185,7 +202,7 @@ class HashField {
 
   FieldConfig config_;
   std::unique_ptr<const encoding::Encoding> encoding_;
-  int color_inputs_ = 0;
+  float raw_shift_ = 0.0F;  // RawShift of the configuration
   int scale_rows_ = 0;
   std::vector<Layer> layers_;             // density network, then colour
   std::vector<int64_t> network_offsets_;  // layers + 1

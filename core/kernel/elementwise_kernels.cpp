@@ -27,6 +27,28 @@ void ExpShiftedImpl(const float* x, int64_t n, float bias, float limit, float* o
   }
 }
 
+// log(1 + exp(t)) as max(0, t) + log(1 + exp(-|t|)), which neither overflows nor loses digits where exp(t) is small. Of a NaN and a number Min and
+// Max give their second argument.
+void SoftplusShiftedImpl(const float* x, int64_t n, float bias, float most, float* out) {
+  const FloatTag d;
+  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
+  const auto zero = hn::Zero(d);
+  for (int64_t s = 0; s < n; s += lanes) {
+    const auto t = hn::Add(hn::LoadU(d, x + s), hn::Set(d, bias));
+    const auto bend = hn::Log1p(d, hn::Exp(d, hn::Neg(hn::Abs(t))));
+    hn::StoreU(hn::Min(hn::Add(hn::Max(t, zero), bend), hn::Set(d, most)), d, out + s);
+  }
+}
+
+void ReluShiftedImpl(const float* x, int64_t n, float shift, float most, float* out) {
+  const FloatTag d;
+  const auto lanes = static_cast<int64_t>(hn::Lanes(d));
+  for (int64_t s = 0; s < n; s += lanes) {
+    const auto t = hn::Add(hn::LoadU(d, x + s), hn::Set(d, shift));
+    hn::StoreU(hn::Min(hn::Max(t, hn::Zero(d)), hn::Set(d, most)), d, out + s);
+  }
+}
+
 void SigmoidImpl(const float* x, int64_t n, float range, float* out) {
   const FloatTag d;
   const auto lanes = static_cast<int64_t>(hn::Lanes(d));
@@ -102,6 +124,8 @@ HWY_AFTER_NAMESPACE();
 namespace skyquilt::kernel {
 
 HWY_EXPORT(ExpShiftedImpl);
+HWY_EXPORT(SoftplusShiftedImpl);
+HWY_EXPORT(ReluShiftedImpl);
 HWY_EXPORT(SigmoidImpl);
 HWY_EXPORT(SineCosineImpl);
 HWY_EXPORT(AllFiniteImpl);
@@ -120,6 +144,16 @@ void ExpShifted(const float* x, int64_t n, float bias, float limit, float* out) 
   CheckWholeVectors(n);
   SKYQUILT_CHECK(limit <= kMaxExpLimit, std::to_string(limit));
   HWY_DYNAMIC_DISPATCH(ExpShiftedImpl)(x, n, bias, limit, out);
+}
+
+void SoftplusShifted(const float* x, int64_t n, float bias, float most, float* out) {
+  CheckWholeVectors(n);
+  HWY_DYNAMIC_DISPATCH(SoftplusShiftedImpl)(x, n, bias, most, out);
+}
+
+void ReluShifted(const float* x, int64_t n, float shift, float most, float* out) {
+  CheckWholeVectors(n);
+  HWY_DYNAMIC_DISPATCH(ReluShiftedImpl)(x, n, shift, most, out);
 }
 
 void Sigmoid(const float* x, int64_t n, float range, float* out) {

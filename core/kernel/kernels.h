@@ -117,13 +117,18 @@ void HashTangent(const GridLevel& level, int features, const float* table, const
 void HashTangentBackward(const GridLevel& level, int features, const Positions& at, int64_t n, const float* along, size_t along_stride,
                          const float* out_gradient, size_t out_stride, float* table_gradient, uint8_t* touched);
 
-// The next four process whole vectors: n is a multiple of kPad. Results may replace their input.
+// The next six process whole vectors: n is a multiple of kPad. Results may replace their input.
 
 // The largest `limit` of ExpShifted: exp of it is finite.
 constexpr float kMaxExpLimit = 88.7F;
 // out = exp(min(limit, x + bias)), limit <= kMaxExpLimit. Within 1.1 ulp for bias 0, for all x; x + bias is rounded to a float first, which can cost
 // |x + bias| ulp more. NaN gives a finite number that depends on the instruction set: look for it with AllFinite.
 void ExpShifted(const float* x, int64_t n, float bias, float limit, float* out);
+// out = min(most, log(1 + exp(x + bias))), between 0 and most. Within 2.9 ulp for bias 0, for all x; x + bias is rounded to a float first, as
+// in ExpShifted. NaN as there.
+void SoftplusShifted(const float* x, int64_t n, float bias, float most, float* out);
+// out = min(most, max(0, x + shift)), rounded once. NaN as in ExpShifted.
+void ReluShifted(const float* x, int64_t n, float shift, float most, float* out);
 // out = range / (1 + exp(-x)), between 0 and range. Within 2.6 ulp for x >= -80; below, the result stays at range * 1.8e-35. NaN as in ExpShifted.
 void Sigmoid(const float* x, int64_t n, float range, float* out);
 // sin(2 pi turns) and cos(2 pi turns). Within 3.1 ulp for all finite turns, which is at most 1.9e-7; the zeros are exact. Infinity and NaN give NaN.

@@ -112,10 +112,21 @@ void HashBackward(const GridLevel& level, const std::vector<std::array<T, 3>>& p
   for (const std::array<T, 3>& position : positions) HashBackward(level, position.data(), out_gradient, table_gradient);
 }
 
-// One value of ExpShifted, Sigmoid and SineCosine.
+// One value of ExpShifted, SoftplusShifted, ReluShifted, Sigmoid and SineCosine.
 template <typename T>
 T ExpShifted(T x, T bias, T limit) {
   return std::exp(std::min(limit, x + bias));
+}
+
+template <typename T>
+T SoftplusShifted(T x, T bias, T most) {
+  const T t = x + bias;
+  return std::min(most, std::max(T(0), t) + std::log1p(std::exp(-std::abs(t))));
+}
+
+template <typename T>
+T ReluShifted(T x, T shift, T most) {
+  return std::min(most, std::max(T(0), x + shift));
 }
 
 template <typename T>

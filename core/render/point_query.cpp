@@ -103,7 +103,7 @@ void PointEvaluator::Add(const TrainedField& trained, std::span<const QueryPoint
   const field::Activations& scratch = scratch_[scratch_.For(f)];
   f.Density(trained.weights, features_.data(), field::kChunkStride, padded, scratch.density_hidden, scratch.stride, geometry_.data(),
             field::kChunkStride);
-  kernel::ExpShifted(geometry_.data(), padded, static_cast<float>(trained.config.density_bias), kMaxPointLogTau, depth_.data());
+  f.StepTau(geometry_.data(), padded, kMaxPointLogTau, depth_.data());
   if (colors) EvaluateColors(trained, points);
   for (size_t j = 0; j < inside_.size(); ++j) {
     const QueryPoint& point = points[inside_[j]];

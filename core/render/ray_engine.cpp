@@ -175,7 +175,7 @@ class RayRenderer::Group {
                 scratch.density_hidden, scratch.stride, batch.geometry.data() + begin, batch.stride);
     }
     batch.step_depth.resize(std::max(batch.step_depth.size(), batch.stride));
-    kernel::ExpShifted(batch.geometry.data(), padded, static_cast<float>(trained.config.density_bias), kMaxLogTau, batch.step_depth.data());
+    f.StepTau(batch.geometry.data(), padded, kMaxLogTau, batch.step_depth.data());
   }
 
   // Composites the samples of the round in order of distance; false when the ray is finished.

@@ -109,6 +109,10 @@ void PutDescription(const render::TrainedField& f, const std::string& prefix, ch
   writer.SetAttribute(prefix + "density_hidden_layers", f.config.density_hidden_layers);
   writer.SetAttribute(prefix + "luminance", f.config.luminance ? 1 : 0);
   if (f.config.normal_head) writer.SetAttribute(prefix + "normal_head", 1);
+  if (f.config.density_activation != field::DensityActivation::kExp) {
+    writer.SetAttribute(prefix + "density_activation", field::Name(f.config.density_activation));
+  }
+  if (f.config.appearance > 0) writer.SetAttribute(prefix + "appearance", f.config.appearance);
   if (f.config.Cones()) {
     writer.SetAttribute(prefix + "multisample", f.config.multisample);
     writer.SetAttribute(prefix + "scale_features", f.config.scale_features ? 1 : 0);
@@ -175,6 +179,8 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
   f.config.luminance = reader.IntAttribute(prefix + "luminance") != 0;
   // Missing in files of fields without one.
   f.config.normal_head = reader.HasAttribute(prefix + "normal_head") && reader.IntAttribute(prefix + "normal_head") != 0;
+  // Missing in files of fields with exp and without codes.
+  if (reader.HasAttribute(prefix + "appearance")) f.config.appearance = static_cast<int>(reader.IntAttribute(prefix + "appearance"));
   f.config.density_hidden_layers = static_cast<int>(reader.IntAttribute(prefix + "density_hidden_layers"));
   f.occupancy.cell = static_cast<float>(reader.DoubleAttribute(prefix + "occupancy_cell"));
   // Missing in files of programs without cones.
@@ -190,6 +196,9 @@ render::TrainedField GetDescription(const checkpoint::ArchiveReader& reader, con
   f.blend_m = f.box.margin_m;
   try {
     f.config.encoding = encoding::KindNamed(reader.StringAttribute(prefix + "encoding"));
+    if (reader.HasAttribute(prefix + "density_activation")) {
+      f.config.density_activation = field::DensityActivationNamed(reader.StringAttribute(prefix + "density_activation"));
+    }
     f.map = box.contracted ? encoding::SpaceMap::Contracted(box.min_enu, box.max_enu) : encoding::SpaceMap::Box(box.min_enu, box.max_enu);
     const field::HashField checked(f.config);
   } catch (const std::invalid_argument& error) {

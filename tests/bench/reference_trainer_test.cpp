@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 #include "bench/numerics/numeric_case.h"
@@ -30,24 +28,51 @@ SyntheticOptions TinyScene() {
 // Exposures of plus and minus one stop, and some empty rays, so that every loss is used.
 const SyntheticRays kMixedRays{.rays = 12, .empty_share = 0.25F, .most_stops = 1.0F};
 
-// Points, and cones with each number of positions; with and without rows that tell the scale.
-class ReferenceGradients : public ::testing::TestWithParam<std::pair<int, bool>> {};
+// Points, and cones with each number of positions; with and without rows that tell the scale; other activations of density; codes of photos.
+struct Kind {
+  const char* name;
+  int multisample = 0;
+  bool scale_features = false;
+  field::DensityActivation activation = field::DensityActivation::kExp;
+  int appearance = 0;
+};
+
+void SetKind(const Kind& kind, SyntheticOptions* scene) {
+  scene->multisample = kind.multisample;
+  scene->scale_features = kind.scale_features;
+  scene->density_activation = kind.activation;
+  scene->appearance = kind.appearance;
+}
+
+// Codes as after some training.
+void FillCodes(base::Random& random, SyntheticTrainer& trainer) {
+  for (float& number : trainer.codes().state().codes) number = random.Uniform() - 0.5F;
+}
+
+// Samples of other lengths than one step, as at the far end of a ray and for wide pixels.
+void ChangeLengths(base::Random& random, worker::RayBatch* batch) {
+  for (float& length : batch->unit_length) length *= 0.5F + random.Uniform();
+}
+
+class ReferenceGradients : public ::testing::TestWithParam<Kind> {};
 
 TEST_P(ReferenceGradients, MatchFiniteDifferencesInDouble) {
   SyntheticOptions scene = TinyScene();
-  std::tie(scene.multisample, scene.scale_features) = GetParam();
+  SetKind(GetParam(), &scene);
   SyntheticTrainer trainer(scene, 3, 1);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
   base::Random random(5);
   SyntheticRays rays = kMixedRays;
   rays.least_width_m = 0.05;
   rays.most_width_m = scene.edge_m;
-  const worker::RayBatch batch = trainer.Draw(rays, random);
-  ReferenceState state = ReferenceState::From(trainer.state());
+  worker::RayBatch batch = trainer.Draw(rays, random);
+  ChangeLengths(random, &batch);
+  FillCodes(random, trainer);
+  ReferenceState state = ReferenceState::From(trainer.state(), trainer.codes().state());
   for (double& value : state.grid) value = random.Uniform(-0.5, 0.5);  // large enough to matter
-  std::vector<double> grid, networks;
+  std::vector<double> grid, networks, codes;
   const double distortion = 0.05;
-  const ReferenceResult at = reference.Gradient(batch, state, distortion, &grid, &networks);
+  const ReferenceResult at = reference.Gradient(batch, state, distortion, &grid, &networks, &codes);
   EXPECT_GT(at.loss, 0.01);
   const auto loss_with = [&](std::vector<double> ReferenceState::*part) {
     return [&, part](const std::vector<double>& values) {
@@ -58,11 +83,13 @@ TEST_P(ReferenceGradients, MatchFiniteDifferencesInDouble) {
   };
   testing::ExpectGradient(loss_with(&ReferenceState::grid), state.grid, grid, 1e-7);
   testing::ExpectGradient(loss_with(&ReferenceState::networks), state.networks, networks, 1e-7);
+  testing::ExpectGradient(loss_with(&ReferenceState::codes), state.codes, codes, 1e-7);
   const auto nonzero = [](const std::vector<double>& values) {
     return std::count_if(values.begin(), values.end(), [](double v) { return v != 0.0; });
   };
   EXPECT_GT(nonzero(grid), 20);
   EXPECT_GT(nonzero(networks), 80);
+  EXPECT_GT(nonzero(codes), GetParam().appearance > 0 ? 8 : -1);
 }
 
 // Behind opaque samples; in several packets, from which the trainer drops them before the backward pass.
@@ -70,16 +97,19 @@ TEST_P(ReferenceGradients, AreTheWorkersWithHiddenSamples) {
   SyntheticOptions scene;
   scene.log2_table_size = 8;
   scene.hidden = 8;
-  std::tie(scene.multisample, scene.scale_features) = GetParam();
+  SetKind(GetParam(), &scene);
   SyntheticTrainer trainer(scene, 3, 2);
   base::Random random(9);
   for (float& value : trainer.state().parameters.grid) value = 60.0F * (random.Uniform() - 0.5F);
+  FillCodes(random, trainer);
   SyntheticRays rays{.rays = 150, .empty_share = 0.1F, .most_stops = 1.0F, .least_width_m = 0.05, .most_width_m = 1.0};
-  const worker::RayBatch batch = trainer.Draw(rays, random);
+  worker::RayBatch batch = trainer.Draw(rays, random);
+  ChangeLengths(random, &batch);
   ASSERT_GT(batch.packets.size(), 3U);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
-  std::vector<double> grid, networks;
-  const ReferenceResult exact = reference.Gradient(batch, ReferenceState::From(trainer.state()), 1e-2, &grid, &networks);
+  std::vector<double> grid, networks, codes;
+  const ReferenceResult exact =
+      reference.Gradient(batch, ReferenceState::From(trainer.state(), trainer.codes().state()), 1e-2, &grid, &networks, &codes);
   const SyntheticTrainer::Gradients seen = trainer.GradientsOf(batch, 1e-2);
   EXPECT_EQ(seen.result.n_live, exact.live);
   EXPECT_LT(10 * exact.live, 9 * batch.n_samples);
@@ -87,12 +117,20 @@ TEST_P(ReferenceGradients, AreTheWorkersWithHiddenSamples) {
   EXPECT_NEAR(seen.result.loss, exact.loss, 1e-5 * exact.loss);
   EXPECT_LT(RelativeDistance(seen.grid, grid), 1e-4);
   EXPECT_LT(RelativeDistance(seen.networks, networks), 1e-4);
+  ASSERT_EQ(seen.codes.size(), codes.size());
+  if (!codes.empty()) {
+    EXPECT_LT(RelativeDistance(seen.codes, codes), 1e-4);
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(Multisample, ReferenceGradients,
-                         ::testing::Values(std::pair(0, false), std::pair(1, false), std::pair(1, true), std::pair(4, false), std::pair(6, false),
-                                           std::pair(6, true)),
-                         [](const auto& of) { return std::to_string(of.param.first) + (of.param.second ? "_with_scales" : ""); });
+INSTANTIATE_TEST_SUITE_P(Kinds, ReferenceGradients,
+                         ::testing::Values(Kind{"points"}, Kind{"cones", 1}, Kind{"cones_with_scales", 1, true}, Kind{"cones_of_4", 4},
+                                           Kind{"cones_of_6", 6}, Kind{"cones_of_6_with_scales", 6, true},
+                                           Kind{"softplus", 0, false, field::DensityActivation::kSoftplus},
+                                           Kind{"relu", 1, true, field::DensityActivation::kRelu},
+                                           Kind{"codes_of_5", 0, false, field::DensityActivation::kExp, 5},
+                                           Kind{"codes_of_8_and_softplus", 1, true, field::DensityActivation::kSoftplus, 8}),
+                         [](const auto& of) { return of.param.name; });
 
 // Footprints as large as the scene leave less of the fine level than of the coarse one.
 TEST(ReferenceField, FootprintsFadeFineLevelsFirst) {
@@ -164,23 +202,47 @@ TEST(ReferenceTrainer, LearnsAndDoesNotChangeUntouchedEntries) {
   EXPECT_LT(last, 0.7 * first);
 }
 
+// Adam and the zero mean of codes, of which some photos have none yet.
+TEST(ReferenceTrainer, StepsCodesAsTheWorker) {
+  SyntheticOptions scene = TinyScene();
+  scene.appearance = 5;
+  SyntheticTrainer trainer(scene, 3, 2);
+  const ReferenceTrainer reference(trainer.target(), trainer.field());
+  base::Random random(5);
+  ReferenceState state = ReferenceState::From(trainer.state(), trainer.codes().state());
+  for (int step = 0; step < 12; ++step) {
+    const worker::RayBatch batch = trainer.Draw({.rays = step < 6 ? 3 : 24, .empty_share = 0.2F}, random);
+    trainer.Train(batch, {.learning_rate = 1e-3});
+    reference.Step(batch, {.learning_rate = 1e-3}, state);
+    const worker::AppearanceCodes::State& seen = trainer.codes().state();
+    EXPECT_EQ(seen.steps, state.code_steps);
+    EXPECT_EQ(std::count(seen.steps.begin(), seen.steps.end(), 0), step < 6 ? 2 : 0);
+    for (size_t i = 0; i < state.codes.size(); ++i) EXPECT_NEAR(seen.codes[i], state.codes[i], 2e-5) << step << " " << i;
+  }
+  EXPECT_GT(*std::max_element(state.codes.begin(), state.codes.end()), 1e-3) << "nothing was learned";
+}
+
 TEST_P(ReferenceGradients, AreTheWorkersFromTheSameStart) {
   SyntheticOptions scene = TinyScene();
-  std::tie(scene.multisample, scene.scale_features) = GetParam();
+  SetKind(GetParam(), &scene);
   SyntheticTrainer trainer(scene, 3, 1);
   const ReferenceTrainer reference(trainer.target(), trainer.field());
   base::Random random(5);
   SyntheticRays rays = kMixedRays;
   rays.least_width_m = 0.05;
   rays.most_width_m = scene.edge_m;
-  const worker::RayBatch batch = trainer.Draw(rays, random);
-  std::vector<double> grid, networks;
-  const ReferenceResult exact = reference.Gradient(batch, ReferenceState::From(trainer.state()), 1e-2, &grid, &networks);
+  worker::RayBatch batch = trainer.Draw(rays, random);
+  ChangeLengths(random, &batch);
+  std::vector<double> grid, networks, codes;
+  const ReferenceResult exact =
+      reference.Gradient(batch, ReferenceState::From(trainer.state(), trainer.codes().state()), 1e-2, &grid, &networks, &codes);
   const SyntheticTrainer::Gradients seen = trainer.GradientsOf(batch, 1e-2);
   EXPECT_NEAR(seen.result.loss, exact.loss, 1e-5 * exact.loss);
   EXPECT_EQ(seen.result.n_live, exact.live);
   for (size_t i = 0; i < networks.size(); ++i) EXPECT_NEAR(seen.networks[i], networks[i], 1e-6) << i;
   for (size_t i = 0; i < grid.size(); ++i) EXPECT_NEAR(seen.grid[i], grid[i], 1e-6) << i;
+  ASSERT_EQ(seen.codes.size(), codes.size());
+  for (size_t i = 0; i < codes.size(); ++i) EXPECT_NEAR(seen.codes[i], codes[i], 1e-6) << i;
 }
 
 }  // namespace

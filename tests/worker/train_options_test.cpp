@@ -69,5 +69,28 @@ TEST(TrainOptions, MayAskForScaleFeaturesOfPointsWhichHaveNone) {
   }
 }
 
+TEST(TrainOptions, KnowThreeActivationsOfDensity) {
+  TrainOptions options;
+  for (const char* name : {"exp", "softplus", "relu"}) {
+    options.density_activation = name;
+    EXPECT_EQ(Refusal(options), "") << name;
+  }
+  options.density_activation = "square";
+  EXPECT_EQ(Refusal(options, "context"), "context.density_activation = \"square\" is not allowed: it must be exp, softplus or relu");
+}
+
+TEST(TrainOptions, TakeCodesOfUpTo32Numbers) {
+  TrainOptions options;
+  EXPECT_EQ(options.appearance_codes, 0);
+  for (const int numbers : {0, 1, 3, 32}) {
+    options.appearance_codes = numbers;
+    EXPECT_EQ(Refusal(options), "") << numbers;
+  }
+  for (const int numbers : {-1, 33}) {
+    options.appearance_codes = numbers;
+    EXPECT_NE(Refusal(options).find("train.appearance_codes"), std::string::npos) << numbers;
+  }
+}
+
 }  // namespace
 }  // namespace skyquilt::worker

@@ -90,6 +90,8 @@ class RaySource {
   // The ray of the pixel that shows a sparse point; false when it is masked.
   bool PointRay(const DepthPoint& point, PixelRay* ray) const;
 
+  // Of the survey, held-out ones too.
+  size_t photos() const { return cameras_.size(); }
   // The camera at the cached image size.
   const camera::Camera& CameraOf(int photo) const { return cameras_[static_cast<size_t>(photo)]; }
   // The ray through a position in the cached image, pixels.

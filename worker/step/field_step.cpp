@@ -74,7 +74,7 @@ void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
 }
 
 StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::OptimizerState& state,
-                            brightness::ResponseLearner* learner) {
+                            brightness::ResponseLearner* learner, AppearanceCodes* codes) {
   StepResult result;
   result.n_rays = static_cast<int>(batch.rays.size());
   result.n_samples = batch.n_samples;
@@ -87,6 +87,8 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   const auto network_size = static_cast<size_t>(field_.NetworkParameters());
   slot_gradients_.assign(network_size * kGradientSlots, 0.0F);
   gain_gradients_.assign(learner != nullptr ? batch.rays.size() : 0, {0.0F, 0.0F, 0.0F});
+  if (codes != nullptr && !codes->On()) codes = nullptr;
+  code_gradients_.assign(codes != nullptr ? batch.rays.size() * codes->numbers() : 0, 0.0F);
   const float ray_share = 1.0F / static_cast<float>(std::max(1, result.n_rays));
   const PacketStep step{.batch = batch,
                         .weights = field_.Prepare(parameters.networks),
@@ -97,6 +99,8 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
                         .distortion = options.distortion,
                         .priors = options.priors,
                         .gain_gradients = gain_gradients_.empty() ? nullptr : gain_gradients_.data(),
+                        .codes = codes,
+                        .code_gradients = codes != nullptr ? code_gradients_.data() : nullptr,
                         .surface_points = options.priors.Normals() ? surface_points_.data() : nullptr};
   threads_.ParallelFor(kGradientSlots, [&](int64_t slot, int thread) {
     PacketTrainer& trainer = *trainers_[static_cast<size_t>(thread)];
@@ -119,6 +123,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
     const PixelRay& ray = batch.rays[k].ray;
     if (!ray.empty) learner->Add(static_cast<size_t>(ray.photo), gain_gradients_[k].data(), ray_share);
   }
+  if (codes != nullptr) TrainCodes(batch, options.learning_rate, *codes);
   times_.Add(0, Phase::kBackward, at);
   optimizer_.Update(
       batch.Positions(field_.config()), gradient_segments_, options.learning_rate, options.network_l2, parameters, state,
@@ -172,6 +177,14 @@ void FieldStep::ClipNetworkGradient(field::OptimizerState& state, StepResult& re
     for (float& value : state.network_gradient) value *= factor;
   }
   running = running > 0.0 ? running + kNormFollows * (std::min(norm, most) - running) : norm;
+}
+
+void FieldStep::TrainCodes(const RayBatch& batch, double learning_rate, AppearanceCodes& codes) const {
+  for (size_t k = 0; k < batch.rays.size(); ++k) {
+    const PixelRay& ray = batch.rays[k].ray;
+    if (!ray.empty) codes.Add(ray.photo, code_gradients_.data() + k * codes.numbers());
+  }
+  codes.Step(learning_rate);
 }
 
 void FieldStep::UpdateRunningMeans(const LossSums& sums) {

@@ -18,6 +18,7 @@
 #include "core/render/trained_field.h"
 #include "worker/phase_times.h"
 #include "worker/rays/ray_batch.h"
+#include "worker/step/appearance_codes.h"
 #include "worker/step/packet_trainer.h"
 
 namespace skyquilt::worker {
@@ -58,9 +59,10 @@ class FieldStep {
   FieldStep& operator=(const FieldStep&) = delete;
 
   // One step on the batch; overwrites positions of the batch. When the gradients are not finite, parameters and moments stay as they were. Gradients
-  // by the photos' gains are added to the learner, which may be null; the caller makes its step.
+  // by the photos' gains are added to the learner, which may be null; the caller makes its step. The codes learn too; null or off: every ray has the
+  // code of the mean look.
   StepResult Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::OptimizerState& state,
-                   brightness::ResponseLearner* learner);
+                   brightness::ResponseLearner* learner, AppearanceCodes* codes = nullptr);
   // Only density and colour of every sample, for timing.
   void Infer(RayBatch& batch, const field::Parameters& parameters);
   // Running means with luminance; part of the checkpoint.
@@ -79,6 +81,8 @@ class FieldStep {
   static void ClipNetworkGradient(field::OptimizerState& state, StepResult& result);
   // Adds the slots' gradients to the state's; false when one is not finite.
   bool SumNetworkGradients(field::OptimizerState& state) const;
+  // With the gradients of the batch's rays.
+  void TrainCodes(const RayBatch& batch, double learning_rate, AppearanceCodes& codes) const;
   void UpdateRunningMeans(const LossSums& sums);
 
   const field::HashField& field_;
@@ -96,6 +100,7 @@ class FieldStep {
   std::vector<SurfacePoints> surface_points_;  // per packet; empty without losses of normals
   std::vector<float> slot_gradients_;
   std::vector<std::array<float, 3>> gain_gradients_;  // per ray, by its log gains; empty without a learner
+  std::vector<float> code_gradients_;                 // per ray, by the code of its photo; empty without codes
   std::vector<field::FeatureGradient> gradient_segments_;
 };
 

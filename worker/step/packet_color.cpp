@@ -1,6 +1,7 @@
 #include "worker/step/packet_color.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace skyquilt::worker {
 namespace {
@@ -14,6 +15,8 @@ void PacketColor::Forward(PacketSamples& s) const {
   for (size_t k = 0; k < s.views.size(); ++k) {
     const Eigen::Vector3f direction = s.Ray(k).ray.direction_enu.cast<float>();
     shared_.field.EncodeDirection(direction.data(), s.views[k].count, sh + s.views[k].begin, s.a.stride);
+    if (s.step->codes == nullptr) continue;
+    shared_.field.EncodeAppearance(s.step->codes->Of(s.Ray(k).ray.photo), s.views[k].count, sh + s.views[k].begin, s.a.stride);
   }
   s.ZeroPadding(sh, shared_.field.ColorInputRows() - field::kGeometryRows, s.a.stride);
   shared_.field.Color(s.step->weights, s.a.color_in, s.a.stride, s.Padded(), s.a.color_hidden, s.a.stride, s.a.color_raw, s.a.stride);
@@ -39,6 +42,18 @@ int64_t PacketColor::FinishGradient(PacketSamples& s) const {
   }
   s.ZeroPadding(s.a.color_gradient, field::kColorRows, s.a.stride);
   return saturated;
+}
+
+void PacketColor::SumCodeGradients(const PacketSamples& s) const {
+  if (s.step->code_gradients == nullptr) return;
+  const size_t numbers = s.step->codes->numbers();
+  for (size_t k = 0; k < s.views.size(); ++k) {
+    float* of_ray = s.step->code_gradients + (static_cast<size_t>(s.packet->first_ray) + k) * numbers;
+    for (size_t number = 0; number < numbers; ++number) {
+      const float* row = s.a.appearance_gradient + number * s.a.stride + s.views[k].begin;
+      of_ray[number] = std::accumulate(row, row + s.views[k].count, 0.0F);
+    }
+  }
 }
 
 }  // namespace skyquilt::worker

@@ -14,6 +14,8 @@ class PacketColor {
   // After the losses: turns the gradients by rgb into gradients by color_raw, in place. Returns the number of colours, of samples and channels, that
   // are within 2 % of an end of their range.
   int64_t FinishGradient(PacketSamples& s) const;
+  // After the networks' backward pass: writes the gradients by the codes of the packet's rays, if the step has codes.
+  void SumCodeGradients(const PacketSamples& s) const;
 
  private:
   const PacketShared& shared_;

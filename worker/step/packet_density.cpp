@@ -18,10 +18,11 @@ constexpr float kSaturatedTau = 1e4F;
 void PacketDensity::Forward(PacketSamples& s) {
   Grow(depth_, s.a.stride);
   Grow(keep_, s.a.stride);
+  if (Activation() != field::DensityActivation::kExp) Grow(slope_, s.a.stride);
   float* features = s.Features();
   s.ZeroPadding(features, shared_.field.FeatureRows(), s.packet->stride);
   shared_.field.Density(s.step->weights, features, s.packet->stride, s.Padded(), s.a.density_hidden, s.a.stride, s.a.geometry(), s.a.stride);
-  kernel::ExpShifted(s.a.geometry(), s.Padded(), static_cast<float>(shared_.target.config.density_bias), kMaxLogTau, depth_.data());
+  shared_.field.StepTau(s.a.geometry(), s.Padded(), kMaxLogTau, depth_.data());
 }
 
 void PacketDensity::KeepAll(PacketSamples& s) {
@@ -53,6 +54,8 @@ void PacketDensity::DropHidden(PacketSamples& s) {
 int64_t PacketDensity::LiveSamples(PacketSamples& s, size_t view, int64_t first_live) {
   const BatchRay& r = s.Ray(view);
   const float* unit_length = s.step->batch.unit_length.data();
+  const field::DensityActivation activation = Activation();
+  const bool keeps_slope = activation != field::DensityActivation::kExp;
   int64_t live = first_live;
   float passed = 0.0F;
   int64_t i = 0;
@@ -62,6 +65,7 @@ int64_t PacketDensity::LiveSamples(PacketSamples& s, size_t view, int64_t first_
     const float tau = depth_[local] * unit_length[in_batch];
     passed += tau;
     keep_[local] = 1.0F;
+    if (keeps_slope) slope_[static_cast<size_t>(live)] = field::TauSlope(activation, depth_[local]) * unit_length[in_batch];
     s.tau[static_cast<size_t>(live++)] = tau;
     s.step->observed[in_batch] = depth_[local];
   }
@@ -74,12 +78,13 @@ int64_t PacketDensity::LiveSamples(PacketSamples& s, size_t view, int64_t first_
   return live - first_live;
 }
 
-int64_t PacketDensity::FinishGradient(PacketSamples& s) {
+int64_t PacketDensity::FinishGradient(PacketSamples& s) const {
   int64_t saturated = 0;
-  // d tau / d log density = tau, but 0 where a step would make an opaque sample denser.
+  // d tau / d log density, which is tau with exp; but 0 where a step would make an opaque sample denser.
+  const float* const slope = Activation() == field::DensityActivation::kExp ? s.tau.data() : slope_.data();
   for (size_t i = 0; i < static_cast<size_t>(s.live); ++i) {
     float& gradient = s.a.log_density_gradient[i];
-    gradient = s.tau[i] > kNoDenserTau && gradient < 0.0F ? 0.0F : gradient * s.tau[i];
+    gradient = s.tau[i] > kNoDenserTau && gradient < 0.0F ? 0.0F : gradient * slope[i];
     if (s.tau[i] > kSaturatedTau) ++saturated;
   }
   s.ZeroPadding(s.a.log_density_gradient, 1, s.a.stride);

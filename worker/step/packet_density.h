@@ -21,14 +21,16 @@ class PacketDensity {
   static void KeepAll(PacketSamples& s);
   // After the losses: turns the gradients by tau into gradients by the log density, in place. Returns the number of samples that are far denser than
   // opaque.
-  static int64_t FinishGradient(PacketSamples& s);
+  int64_t FinishGradient(PacketSamples& s) const;
 
  private:
+  field::DensityActivation Activation() const { return shared_.field.config().density_activation; }
   // Finds the samples of a ray that light reaches and writes their optical depths to s.tau from first_live. Returns their number.
   int64_t LiveSamples(PacketSamples& s, size_t view, int64_t first_live);
 
   const PacketShared& shared_;
   std::vector<float> depth_, keep_;  // per sample before any is dropped: tau of a marching step; 1 for those to keep, else 0
+  std::vector<float> slope_;         // per live sample: d tau / d log density; with exp it is tau and not kept here
 };
 
 }  // namespace skyquilt::worker

@@ -12,6 +12,7 @@
 #include "core/field/hash_field.h"
 #include "core/render/trained_field.h"
 #include "worker/rays/ray_batch.h"
+#include "worker/step/appearance_codes.h"
 #include "worker/step/ray_loss.h"
 #include "worker/step/step_priors.h"
 
@@ -38,6 +39,8 @@ struct PacketStep {
   double distortion = 0.0;      // weight of the distortion loss
   StepPriors priors = {};
   std::array<float, 3>* gain_gradients = nullptr;  // per ray, by its log gains; null without a learner
+  const AppearanceCodes* codes = nullptr;          // of the rays' photos; null: every ray has the code of the mean look
+  float* code_gradients = nullptr;                 // per ray with codes, as many numbers as a code has; written by the packets with live samples
   struct SurfacePoints* surface_points = nullptr;  // per packet, written; null without losses of normals
 };
 

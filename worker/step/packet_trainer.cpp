@@ -38,7 +38,7 @@ PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, 
   result.gradient = {packet.begin, samples_.live, samples_.Features(), packet.stride};
   if (concealed_) concealed_->Add(samples_, network_gradient, result.sums);
   if (losses_) losses_->Add(samples_, ends_ ? &*ends_ : nullptr, result.sums);
-  result.saturated = {PacketDensity::FinishGradient(samples_), color_.FinishGradient(samples_)};
+  result.saturated = {density_.FinishGradient(samples_), color_.FinishGradient(samples_)};
   const float* more_geometry_gradient = nullptr;
   if (normals_) {
     SurfacePoints& points = step.surface_points[&packet - step.batch.packets.data()];
@@ -66,6 +66,7 @@ bool PacketTrainer::Backward(float* network_gradient, const float* more_geometry
   float* features = samples_.Features();
   const size_t stride = samples_.packet->stride;
   shared_.field.Backward(samples_.step->weights, samples_.a, features, stride, samples_.Padded(), network_gradient, more_geometry_gradient);
+  color_.SumCodeGradients(samples_);
   bool finite = true;
   for (int row = 0; row < shared_.field.encoding().OutputRows(); ++row) {
     finite = finite && kernel::AllFinite(features + static_cast<size_t>(row) * stride, samples_.live);

@@ -21,7 +21,7 @@ void StepTaus::Evaluate(const field::HashField& field, const field::NetworkWeigh
     for (int64_t s = 0; s < padded; s += field::kChunk) {
       const int64_t size = std::min<int64_t>(field::kChunk, padded - s);
       field.Density(weights, features_.data() + s, stride, size, hidden_.data(), field::kChunkStride, geometry_.data(), field::kChunkStride);
-      kernel::ExpShifted(geometry_.data(), size, static_cast<float>(field.config().density_bias), kMaxLogTau, geometry_.data());
+      field.StepTau(geometry_.data(), size, kMaxLogTau, geometry_.data());
       std::copy_n(geometry_.begin(), std::min(size, count - s), out + begin + s);
     }
   }

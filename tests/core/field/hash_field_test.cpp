@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 #include "core/encoding/spherical_harmonics.h"
@@ -30,7 +31,8 @@ FieldConfig SmallConfig(int color_hidden_layers) {
 // Reference: the same field for one sample, in double and without optimisation.
 struct Reference {
   const HashField& field;
-  std::vector<double> Forward(const std::vector<double>& grid, const std::vector<double>& networks, const double x[3], const double d[3]) const {
+  std::vector<double> Forward(const std::vector<double>& grid, const std::vector<double>& networks, const double x[3], const double d[3],
+                              std::vector<double> code) const {
     auto next = networks.begin();
     const auto dense = [&](int n_out, const std::vector<double>& in, bool relu) {
       const std::vector<double> weights(next, next + n_out * static_cast<int>(in.size()));
@@ -44,8 +46,10 @@ struct Reference {
     in = geometry;
     double sh[16] = {};
     encoding::SphericalHarmonics(d[0], d[1], d[2], field.config().sh_degree, sh);
-    for (int k = 0; k < field.ColorInputRows() - kGeometryRows; ++k)
+    for (int k = 0; k < field.AppearanceRow() - kGeometryRows; ++k)
       in.push_back(k < field.config().sh_degree * field.config().sh_degree ? sh[k] : 0.0);
+    code.resize(static_cast<size_t>(field.AppearanceRows()), 0.0);
+    in.insert(in.end(), code.begin(), code.end());
     for (int l = 0; l < field.config().color_hidden_layers; ++l) in = dense(hidden, in, true);
     const std::vector<double> color = dense(kColorRows, in, false);
     return {color[0], color[1], color[2], geometry[0]};
@@ -55,6 +59,7 @@ struct Reference {
 struct FieldShape {
   encoding::Kind encoding;
   int density_hidden_layers, color_hidden_layers;
+  int appearance = 0;
 };
 
 class HashFieldGradient : public ::testing::TestWithParam<FieldShape> {};
@@ -63,6 +68,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   FieldConfig config = SmallConfig(GetParam().color_hidden_layers);
   config.encoding = GetParam().encoding;
   config.density_hidden_layers = GetParam().density_hidden_layers;
+  config.appearance = GetParam().appearance;
   const HashField field(config);
   base::Random random(19);
   Parameters parameters;
@@ -85,6 +91,11 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
     for (size_t c = 0; c < 3; ++c) color_gradient[c * stride + s] = random.Uniform() - 0.5F;
     density_gradient[s] = random.Uniform() - 0.5F;
   }
+  // The first three samples are of one photo, the others of another.
+  const size_t photo_of[] = {0, 0, 0, 1, 1};
+  const auto numbers = static_cast<size_t>(config.appearance);
+  std::vector<float> codes(2 * numbers);
+  for (float& number : codes) number = random.Uniform() - 0.5F;
   const auto rows = static_cast<size_t>(field.FeatureRows());
   std::vector<float> features(rows * stride, 0.0F);
   field.EncodeSerial(parameters.grid, {x.data(), y.data(), z.data()}, n, features.data(), stride);
@@ -95,12 +106,18 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   field.Density(weights, features.data(), stride, padded, a.density_hidden, a.stride, a.geometry(), a.stride);
   for (size_t s = 0; s < stride; ++s) {
     const float d[3] = {direction[s], direction[stride + s], direction[2 * stride + s]};
-    field.EncodeDirection(d, 1, a.color_in + static_cast<size_t>(kGeometryRows) * a.stride + s, a.stride);
+    float* const after_geometry = a.color_in + static_cast<size_t>(kGeometryRows) * a.stride + s;
+    field.EncodeDirection(d, 1, after_geometry, a.stride);
+    if (s < static_cast<size_t>(n)) field.EncodeAppearance(codes.data() + photo_of[s] * numbers, 1, after_geometry, a.stride);
     a.log_density_gradient[s] = density_gradient[s];
     for (size_t c = 0; c < 4; ++c) a.color_gradient[c * a.stride + s] = color_gradient[c * stride + s];
   }
   field.Color(weights, a.color_in, a.stride, padded, a.color_hidden, a.stride, a.color_raw, a.stride);
   field.Backward(weights, a, features.data(), stride, padded, state.network_gradient.data());
+  std::vector<float> code_gradient(codes.size(), 0.0F);
+  for (size_t s = 0; s < static_cast<size_t>(n); ++s) {
+    for (size_t k = 0; k < numbers; ++k) code_gradient[photo_of[s] * numbers + k] += a.appearance_gradient[k * a.stride + s];
+  }
   // Two segments, as from two packets.
   const FeatureGradient segments[2] = {{0, 2, features.data(), stride}, {2, n - 2, features.data() + 2, stride}};
   std::vector<float> grid_gradient(parameters.grid.size(), 0.0F);
@@ -112,6 +129,7 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
   }
 
   std::vector<double> grid(parameters.grid.begin(), parameters.grid.end()), networks(parameters.networks.begin(), parameters.networks.end());
+  std::vector<double> exact_codes(codes.begin(), codes.end());
   const Reference reference{field};
   const auto loss = [&] {
     double sum = 0.0;
@@ -119,7 +137,8 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
       const double position[3] = {static_cast<double>(x[s]), static_cast<double>(y[s]), static_cast<double>(z[s])};
       const double d[3] = {static_cast<double>(direction[s]), static_cast<double>(direction[stride + s]),
                            static_cast<double>(direction[2 * stride + s])};
-      const auto out = reference.Forward(grid, networks, position, d);
+      const auto code = exact_codes.begin() + static_cast<std::ptrdiff_t>(photo_of[s] * numbers);
+      const auto out = reference.Forward(grid, networks, position, d, {code, code + static_cast<std::ptrdiff_t>(numbers)});
       for (size_t c = 0; c < 3; ++c) sum += static_cast<double>(color_gradient[c * stride + s]) * out[c];
       sum += static_cast<double>(density_gradient[s]) * out[3];
     }
@@ -146,10 +165,11 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
       EXPECT_NEAR(static_cast<double>(gradient[i]), numeric, 2e-5 * std::max(1.0, std::abs(numeric))) << name << " " << i;
     }
     if (!values.empty()) {
-      EXPECT_GT(nonzero, 20U) << name;
+      EXPECT_GT(nonzero, std::min<size_t>(20, values.size() - 1)) << name;
     }
   };
   check(grid, grid_gradient, "grid", grid.size());
+  check(exact_codes, code_gradient, "codes", codes.size());
   // The last row of the last layer is padding.
   check(networks, state.network_gradient, "networks", networks.size() - static_cast<size_t>(field.config().hidden));
 }
@@ -157,11 +177,13 @@ TEST_P(HashFieldGradient, EveryParameterMatchesFiniteDifferencesInDouble) {
 INSTANTIATE_TEST_SUITE_P(Shapes, HashFieldGradient,
                          ::testing::Values(FieldShape{encoding::Kind::kHash, 1, 1}, FieldShape{encoding::Kind::kHash, 1, 2},
                                            FieldShape{encoding::Kind::kHash, 2, 3}, FieldShape{encoding::Kind::kHash, 3, 1},
-                                           FieldShape{encoding::Kind::kVoxels, 1, 1}, FieldShape{encoding::Kind::kPlanes, 2, 1},
-                                           FieldShape{encoding::Kind::kFrequency, 4, 2}),
+                                           FieldShape{encoding::Kind::kHash, 1, 1, 5}, FieldShape{encoding::Kind::kHash, 1, 2, 8},
+                                           FieldShape{encoding::Kind::kFrequency, 1, 3, 1}, FieldShape{encoding::Kind::kVoxels, 1, 1},
+                                           FieldShape{encoding::Kind::kPlanes, 2, 1}, FieldShape{encoding::Kind::kFrequency, 4, 2}),
                          [](const auto& of) {
                            return encoding::Name(of.param.encoding) + std::to_string(of.param.density_hidden_layers) +
-                                  std::to_string(of.param.color_hidden_layers);
+                                  std::to_string(of.param.color_hidden_layers) +
+                                  (of.param.appearance > 0 ? "_with_" + std::to_string(of.param.appearance) : "");
                          });
 
 // Eight layers, as in the NeRF paper, for the frequency encoding.
@@ -183,6 +205,25 @@ TEST(HashField, DeepNetworksHaveAllTheirParametersAndOperations) {
   EXPECT_EQ(a.kept_rows, deep.DensityHiddenRows() + kGeometryRows);
 }
 
+// Whatever is in the buffer: renderings never set a code.
+TEST(HashField, ADirectionComesWithTheCodeOfTheMeanLook) {
+  for (const int numbers : {1, 4, 5, 32}) {
+    FieldConfig config = SmallConfig(1);
+    config.appearance = numbers;
+    const HashField field(config);
+    EXPECT_EQ(field.AppearanceRows(), kernel::PaddedRows(numbers));
+    EXPECT_EQ(field.ColorInputRows(), HashField(SmallConfig(1)).ColorInputRows() + kernel::PaddedRows(numbers));
+    const auto rows = static_cast<size_t>(field.ColorInputRows() - kGeometryRows);
+    std::vector<float> in(rows * 3, 7.0F);
+    const float d[3] = {0.0F, 0.6F, 0.8F};
+    field.EncodeDirection(d, 3, in.data(), 3);
+    for (size_t i = 3 * static_cast<size_t>(field.AppearanceRow() - kGeometryRows); i < in.size(); ++i) EXPECT_EQ(in[i], 0.0F) << i;
+    const std::vector<float> code(static_cast<size_t>(numbers), 2.0F);
+    field.EncodeAppearance(code.data(), 2, in.data(), 3);
+    EXPECT_EQ(std::count(in.begin(), in.end(), 2.0F), 2 * numbers) << "two of three samples";
+  }
+}
+
 TEST(HashField, RefusesImpossibleSettings) {
   FieldConfig config = SmallConfig(1);
   config.hidden = 6;
@@ -197,6 +238,11 @@ TEST(HashField, RefusesImpossibleSettings) {
   EXPECT_THROW(HashField{config}, std::invalid_argument);
   config.density_hidden_layers = 0;
   EXPECT_THROW(HashField{config}, std::invalid_argument);
+  for (const int numbers : {-1, 33}) {
+    config = SmallConfig(1);
+    config.appearance = numbers;
+    EXPECT_THROW(HashField{config}, std::invalid_argument);
+  }
 }
 
 // The first step of Adam moves every parameter with a gradient by the learning rate, whatever the number of threads.

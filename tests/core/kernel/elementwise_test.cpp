@@ -55,6 +55,8 @@ TEST_P(ElementwiseKernels, RefuseUnpaddedLengths) {
   std::vector<float> in(64, 1.0F), out(64), more(64);
   for (const int64_t n : {int64_t{-16}, int64_t{1}, int64_t{15}, int64_t{47}}) {
     EXPECT_THROW(ExpShifted(in.data(), n, 0.0F, 1.0F, out.data()), std::logic_error) << n;
+    EXPECT_THROW(SoftplusShifted(in.data(), n, 0.0F, 1.0F, out.data()), std::logic_error) << n;
+    EXPECT_THROW(ReluShifted(in.data(), n, 0.0F, 1.0F, out.data()), std::logic_error) << n;
     EXPECT_THROW(Sigmoid(in.data(), n, 1.0F, out.data()), std::logic_error) << n;
     EXPECT_THROW(SineCosine(in.data(), n, out.data(), more.data()), std::logic_error) << n;
     EXPECT_THROW(Compact(in.data(), n, 1, in.data(), 64, out.data(), 64), std::logic_error) << n;

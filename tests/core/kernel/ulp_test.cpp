@@ -28,6 +28,12 @@ constexpr float kRange = 1.5F;
 Batch Exp(float bias, float limit) {
   return [=](const float* x, int64_t n, float* out) { ExpShifted(x, n, bias, limit, out); };
 }
+Batch Softplus(float bias, float most = kLargest) {
+  return [=](const float* x, int64_t n, float* out) { SoftplusShifted(x, n, bias, most, out); };
+}
+Batch Relu(float shift, float most = kLargest) {
+  return [=](const float* x, int64_t n, float* out) { ReluShifted(x, n, shift, most, out); };
+}
 Batch ScaledSigmoid(float range) {
   return [=](const float* x, int64_t n, float* out) { Sigmoid(x, n, range, out); };
 }
@@ -78,6 +84,8 @@ T TwinStep(const AdamState& state, T gradient) {
 // The twins, in float as themselves, in double as the exact result.
 constexpr auto kExp = [](auto x) { return reference::ExpShifted(x, decltype(x)(0), decltype(x)(kMaxExpLimit)); };
 constexpr auto kShiftedExp = [](auto x) { return reference::ExpShifted(x, decltype(x)(-5), decltype(x)(kMaxExpLimit)); };
+constexpr auto kSoftplus = [](auto x) { return reference::SoftplusShifted(x, decltype(x)(0), decltype(x)(kLargest)); };
+constexpr auto kShiftedRelu = [](auto x) { return reference::ReluShifted(x, decltype(x)(0.5), decltype(x)(kLargest)); };
 constexpr auto kSigmoid = [](auto x) { return reference::Sigmoid(x, decltype(x)(1)); };
 constexpr auto kScaledSigmoid = [](auto x) { return reference::Sigmoid(x, decltype(x)(kRange)); };
 constexpr auto kSine = [](auto turns) {
@@ -112,6 +120,8 @@ std::vector<Row> Table() {
   return {
       MakeRow("exp", Exp(0.0F, kMaxExpLimit), kExp, -kLargest, kMaxExpLimit, 1.1),                       // 1.04  0.99  0.51
       MakeRow("exp(x - 5)", Exp(-5.0F, kMaxExpLimit), kShiftedExp, -11.0F, 21.0F, 8.6),                  // 8.50  8.50  8.50
+      MakeRow("softplus", Softplus(0.0F), kSoftplus, -kLargest, kLargest, 2.9),                          // 2.73  2.73  1.48
+      MakeRow("relu(x + 0.5)", Relu(0.5F), kShiftedRelu, -kLargest, kLargest, 0.5),                      // 0.50  0.50  0.50
       MakeRow("sigmoid", ScaledSigmoid(1.0F), kSigmoid, -80.0F, kLargest, 2.6),                          // 2.49  2.49  2.49
       MakeRow("1.5 sigmoid", ScaledSigmoid(kRange), kScaledSigmoid, -80.0F, kLargest, 2.0),              // 1.95  1.95  1.95
       MakeRow("sigmoid below -80", ScaledSigmoid(1.0F), kSigmoid, -kLargest, -80.0F, 0.0, kSigmoidEnd),  // absolute: 1.81e-35 on all
@@ -166,6 +176,13 @@ TEST_P(SpecialValues, AreExact) {
   for (const float x : {-kInfinityFloat, -kLargest, -104.1F}) cases.push_back({"exp", exp, x, 0.0F});
   for (const float x : {kInfinityFloat, kLargest, 30.0F}) cases.push_back({"sigmoid", sigmoid, x, kRange});
   for (const float x : {-kInfinityFloat, -kLargest, -81.0F}) cases.push_back({"sigmoid", sigmoid, x, least});
+  for (const float x : {3.0F, kLargest, kInfinityFloat}) {
+    cases.push_back({"softplus", Softplus(0.0F, 2.5F), x, 2.5F});
+    cases.push_back({"relu", Relu(0.0F, 2.5F), x, 2.5F});
+    cases.push_back({"relu", Relu(0.5F, kLargest), -x, 0.0F});
+  }
+  for (const float x : {-104.1F, -kLargest, -kInfinityFloat}) cases.push_back({"softplus", Softplus(0.0F), x, 0.0F});
+  for (const float x : {20.0F, 1e6F, kLargest}) cases.push_back({"softplus", Softplus(0.0F), x, x});
   for (const float whole : {0.0F, -0.0F, 1.0F, -7.0F, 0x1p22F, -0x1p24F}) cases.push_back({"sine", Sine, whole, 0.0F});
   for (const float half : {0.5F, -0.5F, 1000.5F}) cases.push_back({"sine", Sine, half, 0.0F});
   for (const float quarter : {0.25F, -0.25F, 0.75F, -1000.75F}) cases.push_back({"cosine", Cosine, quarter, 0.0F});
@@ -179,6 +196,8 @@ TEST_P(SpecialValues, NanComesOutAsTheHeaderSays) {
   }
   EXPECT_TRUE(std::isfinite(At(Exp(0.0F, 15.0F), Limits::quiet_NaN())));
   EXPECT_TRUE(std::isfinite(At(ScaledSigmoid(kRange), Limits::quiet_NaN())));
+  EXPECT_TRUE(std::isfinite(At(Softplus(0.0F, 15.0F), Limits::quiet_NaN())));
+  EXPECT_TRUE(std::isfinite(At(Relu(0.0F, 15.0F), Limits::quiet_NaN())));
 }
 
 TEST_P(SpecialValues, SigmoidStaysInItsRange) {

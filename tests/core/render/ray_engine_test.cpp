@@ -18,6 +18,14 @@ struct Plain {
   double transmittance = 1.0;
 };
 
+// Of one marching step, from row 0 of the geometry (core/field/density_activation.h).
+double StepTau(double raw, const field::FieldConfig& config) {
+  const double start = std::exp(config.density_bias);
+  if (config.density_activation == field::DensityActivation::kSoftplus) return std::log1p(std::exp(raw) * std::expm1(start));
+  if (config.density_activation == field::DensityActivation::kRelu) return std::max(0.0, raw + start);
+  return std::exp(raw) * start;
+}
+
 // The simple loop: one sample after the other, in order of distance.
 Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
   struct Point {
@@ -51,7 +59,7 @@ Plain WalkPlainly(const FieldSet& set, const Ray& ray) {
     const Eigen::Vector3f d = ray.direction_enu.cast<float>();
     f.field->EncodeDirection(d.data(), 1, a.color_in + static_cast<size_t>(field::kGeometryRows) * a.stride, a.stride);
     f.field->Color(f.weights, a.color_in, a.stride, kernel::kPad, a.color_hidden, a.stride, a.color_raw, a.stride);
-    const double tau = std::exp(static_cast<double>(a.geometry()[0]) + f.config.density_bias) * point.length * point.weight;
+    const double tau = StepTau(static_cast<double>(a.geometry()[0]), f.config) * point.length * point.weight;
     const double after = result.transmittance * std::exp(-tau);
     for (size_t c = 0; c < 3; ++c) {
       const double raw = static_cast<double>(a.color_raw[c * a.stride]);
@@ -66,13 +74,16 @@ struct Matter {
   double density_bias;
   encoding::Kind encoding;
   int density_hidden_layers;
+  field::DensityActivation activation = field::DensityActivation::kExp;
 };
 
 class RayEngine : public ::testing::TestWithParam<Matter> {};
 
 TEST_P(RayEngine, AgreesWithASimpleLoopThroughBlendedBlocks) {
-  const auto [density_bias, encoding, density_hidden_layers] = GetParam();
-  const TrainedField west = RandomField(1, {0, 0, 0}, {5, 5, 4}, 0.8, density_bias, false, encoding, density_hidden_layers);
+  const auto [density_bias, encoding, density_hidden_layers, activation] = GetParam();
+  TrainedField west = RandomField(1, {0, 0, 0}, {5, 5, 4}, 0.8, density_bias, false, encoding, density_hidden_layers);
+  west.config.density_activation = activation;
+  west.BuildNetworks();
   const TrainedField east = RandomField(2, {5, 0, 0}, {10, 5, 6}, 0.8, density_bias);
   FieldSet set;
   set.blocks = {&west, &east};
@@ -103,7 +114,38 @@ TEST_P(RayEngine, AgreesWithASimpleLoopThroughBlendedBlocks) {
 INSTANTIATE_TEST_SUITE_P(ThinAndDense, RayEngine,
                          ::testing::Values(Matter{-4.0, encoding::Kind::kHash, 1}, Matter{0.0, encoding::Kind::kHash, 1},
                                            Matter{0.0, encoding::Kind::kHash, 3}, Matter{0.0, encoding::Kind::kVoxels, 1},
-                                           Matter{0.0, encoding::Kind::kPlanes, 1}, Matter{0.0, encoding::Kind::kFrequency, 2}));
+                                           Matter{0.0, encoding::Kind::kPlanes, 1}, Matter{0.0, encoding::Kind::kFrequency, 2},
+                                           Matter{0.0, encoding::Kind::kHash, 1, field::DensityActivation::kSoftplus},
+                                           Matter{-4.0, encoding::Kind::kHash, 1, field::DensityActivation::kSoftplus},
+                                           Matter{0.0, encoding::Kind::kHash, 1, field::DensityActivation::kRelu}));
+
+// A field that was trained with codes renders as its networks without the inputs for codes.
+TEST(RayEngineWork, FieldsWithCodesShowTheCodeOfZeros) {
+  const TrainedField plain = RandomField(1, {0, 0, 0}, {10, 5, 6}, 0.5, 0.0);
+  TrainedField coded = RandomField(1, {0, 0, 0}, {10, 5, 6}, 0.5, 0.0);
+  coded.config.appearance = 5;
+  const field::HashField& shape = *plain.field;
+  const auto hidden = static_cast<size_t>(shape.config().hidden), inputs = static_cast<size_t>(shape.ColorInputRows());
+  // Before the colour network: the density network's two layers.
+  const size_t first = hidden * static_cast<size_t>(shape.FeatureRows()) + field::kGeometryRows * hidden;
+  for (size_t row = hidden; row > 0; --row) {
+    const auto end = coded.parameters.networks.begin() + static_cast<std::ptrdiff_t>(first + row * inputs);
+    coded.parameters.networks.insert(end, static_cast<size_t>(kernel::PaddedRows(5)), 3.0F);
+  }
+  coded.BuildNetworks();
+  FieldSet with, without;
+  with.blocks = {&coded};
+  without.blocks = {&plain};
+  const std::vector<Ray> rays = RaysFromAbove(200);
+  std::vector<RayColor> seen(rays.size()), expected(rays.size());
+  base::ThreadPool threads(1);
+  RenderRays(with, rays, seen, {}, threads);
+  RenderRays(without, rays, expected, {}, threads);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(seen[i].opacity, expected[i].opacity);
+    for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(seen[i].rgb_srgb[c], expected[i].rgb_srgb[c], 1e-6F) << i;
+  }
+}
 
 TEST(RayEngineWork, SamplesBehindSurfacesAreSkipped) {
   base::ThreadPool threads(1);

@@ -268,6 +268,59 @@ TEST_F(TrainedFieldFile, KeepsItsNormalHead) {
   EXPECT_NE(InputErrorOf([&] { Read(Rewrite(with, {"a/normal_head"})); }), "") << "weights without a head";
 }
 
+// With another activation and codes, whose networks are larger.
+render::TrainedField FieldOf(field::DensityActivation activation, int appearance) {
+  render::TrainedField f = render::RandomField(4, {0, 0, 0}, {5, 5, 4}, 0.8, -1.0);
+  f.config.density_activation = activation;
+  f.config.appearance = appearance;
+  base::Random random(4);
+  const field::HashField shape(f.config);
+  std::vector<float> grid(f.parameters.grid.size());
+  f.parameters.networks.resize(static_cast<size_t>(shape.NetworkParameters()));
+  shape.Initialize(random, grid, f.parameters.networks);
+  f.BuildNetworks();
+  return f;
+}
+
+// In the checkpoint of a block and in the scene; files of default fields know nothing of either.
+TEST_F(TrainedFieldFile, KeepsItsActivationAndItsRowsForCodes) {
+  for (const auto& [activation, appearance] : {std::pair(field::DensityActivation::kExp, 0),
+                                               {field::DensityActivation::kSoftplus, 0},
+                                               {field::DensityActivation::kRelu, 5},
+                                               {field::DensityActivation::kExp, 32}}) {
+    const render::TrainedField before = FieldOf(activation, appearance);
+    const auto [checkpoint, scene] = WriteScene(before);
+    const checkpoint::ArchiveReader reader(checkpoint);
+    EXPECT_EQ(reader.HasAttribute("density_activation"), activation != field::DensityActivation::kExp);
+    EXPECT_EQ(reader.HasAttribute("appearance"), appearance > 0);
+    for (const render::TrainedField& after : {GetField(reader, checkpoint, ""), Read(scene)}) {
+      EXPECT_EQ(after.config.density_activation, activation);
+      EXPECT_EQ(after.config.appearance, appearance);
+      EXPECT_EQ(after.field->ColorInputRows(), before.field->ColorInputRows());
+      ExpectSameLook(before, after, 0.1F);
+    }
+  }
+}
+
+TEST_F(TrainedFieldFile, WithAnUnknownActivationOrImpossibleCodesIsRefused) {
+  const fs::path file = Write(FieldOf(field::DensityActivation::kRelu, 5), "field.h5");
+  const auto refused = [&](const fs::path& rewritten, const std::string& why) {
+    const checkpoint::ArchiveReader reader(rewritten);
+    const std::string error = InputErrorOf([&] { Read(rewritten); });
+    EXPECT_NE(error.find("rewritten.h5"), std::string::npos) << error;
+    EXPECT_NE(error.find(why), std::string::npos) << error;
+  };
+  const auto set = [](const std::string& name, const auto& value) {
+    return [name, value](checkpoint::ArchiveWriter& writer) { writer.SetAttribute(name, value); };
+  };
+  refused(Rewrite(file, {"a/density_activation"}, set("a/density_activation", std::string("square"))), "got \"square\"");
+  for (const int numbers : {-1, 33, 1000}) refused(Rewrite(file, {"a/appearance"}, set("a/appearance", numbers)), "appearance must be 0..32");
+  // Networks that were trained with another number of inputs.
+  refused(Rewrite(file, {"a/appearance"}, set("a/appearance", 9)), "disagree");
+  refused(Rewrite(file, {"a/appearance"}), "disagree");
+  EXPECT_EQ(Read(Rewrite(file, {"a/density_activation"})).config.density_activation, field::DensityActivation::kExp) << "as older files";
+}
+
 // As every file of a program without cones.
 TEST_F(TrainedFieldFile, WithoutFootprintsIsAFieldOfPoints) {
   const render::TrainedField points = Make(encoding::Kind::kHash, 1);

@@ -1,0 +1,85 @@
+#include "worker/step/appearance_codes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/base/errors.h"
+#include "core/kernel/kernels.h"
+
+namespace skyquilt::worker {
+
+AppearanceCodes::AppearanceCodes(size_t photos, int numbers) : photos_(numbers > 0 ? photos : 0), numbers_(static_cast<size_t>(numbers)) {
+  for (auto* values : {&state_.codes, &state_.moment1, &state_.moment2}) values->assign(photos_ * numbers_, 0.0F);
+  state_.steps.assign(photos_, 0);
+  gradient_.assign(photos_ * numbers_, 0.0);
+  touched_.assign(photos_, 0);
+}
+
+void AppearanceCodes::Add(int photo, const float* gradient) {
+  const auto row = static_cast<size_t>(photo);
+  touched_[row] = 1;
+  for (size_t k = 0; k < numbers_; ++k) gradient_[row * numbers_ + k] += static_cast<double>(gradient[k]);
+}
+
+void AppearanceCodes::Step(double learning_rate) {
+  kernel::AdamStep step;
+  step.learning_rate = static_cast<float>(learning_rate);
+  std::vector<float> gradient(numbers_);
+  for (size_t photo = 0; photo < photos_; ++photo) {
+    if (touched_[photo] == 0) continue;
+    const size_t first = photo * numbers_;
+    std::transform(gradient_.begin() + static_cast<std::ptrdiff_t>(first), gradient_.begin() + static_cast<std::ptrdiff_t>(first + numbers_),
+                   gradient.begin(), [](double value) { return static_cast<float>(value); });
+    std::fill_n(gradient_.begin() + static_cast<std::ptrdiff_t>(first), numbers_, 0.0);
+    touched_[photo] = 0;
+    if (!kernel::AllFinite(gradient.data(), static_cast<int64_t>(numbers_))) continue;
+    const auto t = static_cast<double>(++state_.steps[photo]);
+    step.correction1 = static_cast<float>(1.0 - std::pow(static_cast<double>(step.beta1), t));
+    step.correction2 = static_cast<float>(1.0 - std::pow(static_cast<double>(step.beta2), t));
+    kernel::AdamDense(step, 0.0F, static_cast<int64_t>(numbers_), state_.codes.data() + first, gradient.data(), state_.moment1.data() + first,
+                      state_.moment2.data() + first);
+  }
+  SubtractMean();
+}
+
+void AppearanceCodes::SubtractMean() {
+  const auto drawn = photos_ - static_cast<size_t>(std::count(state_.steps.begin(), state_.steps.end(), 0));
+  for (size_t k = 0; k < numbers_ && drawn > 0; ++k) {
+    double sum = 0.0;  // photos that were not drawn have 0
+    for (size_t photo = 0; photo < photos_; ++photo) sum += static_cast<double>(state_.codes[photo * numbers_ + k]);
+    const auto mean = static_cast<float>(sum / static_cast<double>(drawn));
+    for (size_t photo = 0; photo < photos_; ++photo) {
+      if (state_.steps[photo] > 0) state_.codes[photo * numbers_ + k] -= mean;
+    }
+  }
+}
+
+void AppearanceCodes::Put(checkpoint::ArchiveWriter& writer) const {
+  if (!On()) return;
+  const std::vector<int64_t> shape = {static_cast<int64_t>(photos_), static_cast<int64_t>(numbers_)};
+  writer.Put("appearance/codes", state_.codes, shape);
+  writer.Put("appearance/moment1", state_.moment1, shape);
+  writer.Put("appearance/moment2", state_.moment2, shape);
+  writer.Put("appearance/steps", state_.steps);
+}
+
+void AppearanceCodes::Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
+  if (!On()) return;
+  const auto take = [&](auto& to, auto from, const char* name) {
+    if (from.size() != to.size()) {
+      throw base::InputError(
+          file,
+          std::string("array '") + name + "' has " + std::to_string(from.size()) + " numbers, but this survey needs " + std::to_string(to.size()),
+          "Train again with --restart");
+    }
+    to = std::move(from);
+  };
+  take(state_.codes, reader.Floats("appearance/codes"), "appearance/codes");
+  take(state_.moment1, reader.Floats("appearance/moment1"), "appearance/moment1");
+  take(state_.moment2, reader.Floats("appearance/moment2"), "appearance/moment2");
+  take(state_.steps, reader.Ints("appearance/steps"), "appearance/steps");
+}
+
+}  // namespace skyquilt::worker

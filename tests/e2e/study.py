@@ -113,6 +113,27 @@ def test(skyquilt, folder):
     skyquilt.call(*words)
     expect(digest(out / "runs") == before, "a finished variant was run again")
 
+    # Methods: their options come from configs/methods, and a method is added later.
+    out = folder / "methods"
+    words = ["bench", "methods", "--survey", survey, "-o", out, *SMALL, "--methods"]
+    skyquilt.call(*words, "tensorf", "--overlaps", "0.6", status=2, says="--place")
+    skyquilt.call(*words, "tensorf", "--blocks", "1x1", status=2, says="one field")
+    skyquilt.call(*words, "tensorf")
+    before = digest(out / "runs" / "tensorf_one")
+    skyquilt.call(*words, "tensorf,skyquilt", says="tensorf: blocks against one field")
+    expect(digest(out / "runs" / "tensorf_one") == before, "a finished variant was run again")
+    result = check_page(out, "methods")
+    expect([variant["name"] for variant in result["results"]] == ["tensorf_one", "tensorf_blocks", "skyquilt_one", "skyquilt_blocks"], result["results"])
+    for variant in result["results"]:
+        expect("failure" not in variant and variant["psnr_common_db"] is not None, variant)
+        expect(variant["blocks"] == (1 if variant["name"].endswith("_one") else 2), variant)
+        expect(all(field["rays"] > 0 and field["samples"] > 0 for field in variant["fields"]), variant["fields"])
+        config = (out / "runs" / variant["name"] / "config.toml").read_text()
+        expect(('encoding = "planes"' in config) == variant["name"].startswith("tensorf"), config)
+    rows = [line.split(",")[:2] for line in (out / "methods_blocks.csv").read_text().splitlines()[1:]]
+    expect(rows == [[name, block] for name in ("tensorf", "skyquilt") for block in ("r0c0", "r0c1")], rows)
+    expect((out / "methods.png").is_file(), "no picture")
+
     # Priors: every seed has a place of its own, and the pictures remain when the scenes are removed.
     out = folder / "priors"
     words = ["bench", "priors", "-o", out, "--priors", "all", "--seeds", "5,6", *SMALL, "--set", "simulate.image_width=160"]

@@ -55,8 +55,8 @@ std::string StepsVerdict(const MethodPair& pair) {
   const double steps = MeanSteps(pair.one);
   if (at == trainings.end() || !std::isfinite(steps)) return "";
   return fmt::format(
-      "{}: one field made {:.0f} steps, {:.2g} % of the {:.0f} of its paper, so this is what it reaches in the time, not what it can reach.",
-      pair.name, steps, 100.0 * steps / at->fewest_steps, at->fewest_steps);
+      "{}: one field made {:.0f} steps, {:.2g} % of the {} of its paper, so this is what it reaches in the time, not what it can reach.", pair.name,
+      steps, 100.0 * steps / at->fewest_steps, BenchCell::Count(at->fewest_steps).shown);
 }
 
 }  // namespace
@@ -121,10 +121,10 @@ std::vector<std::string> OrderVerdicts(const std::vector<MethodPair>& pairs) {
 std::vector<std::string> MethodVerdicts(const std::vector<MethodPair>& pairs) {
   std::vector<std::string> verdicts = OrderVerdicts(pairs);
   for (const MethodPair& pair : pairs) {
-    if (pair.one.failure.empty() && pair.blocks.failure.empty()) verdicts.push_back(BlocksVerdict(pair));
+    if (std::string told = StepsVerdict(pair); !told.empty()) verdicts.push_back(std::move(told));
   }
   for (const MethodPair& pair : pairs) {
-    if (std::string told = StepsVerdict(pair); !told.empty()) verdicts.push_back(std::move(told));
+    if (pair.one.failure.empty() && pair.blocks.failure.empty()) verdicts.push_back(BlocksVerdict(pair));
   }
   return verdicts;
 }

@@ -46,7 +46,7 @@ OrderCheck CheckBlocksOrder(const std::vector<MethodPair>& pairs);
 // Of every grid with every network that both have: the two as one field, or the two as blocks. Entries read "instant-ngp above nerf", as published.
 OrderCheck CheckGridsOrder(const std::vector<MethodPair>& pairs, bool as_blocks);
 
-// Sentences: each method's blocks against its one field, whether the orders agree, and how far the networks came.
+// Sentences: whether the orders agree, how far the networks came, and each method's blocks against its one field.
 std::vector<std::string> MethodVerdicts(const std::vector<MethodPair>& pairs);
 // Only whether the orders agree. Nothing for an order without published methods.
 std::vector<std::string> OrderVerdicts(const std::vector<MethodPair>& pairs);

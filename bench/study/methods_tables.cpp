@@ -129,8 +129,8 @@ BenchTable NetworkStepsTable(const std::vector<MethodPair>& pairs, double traini
                    .note =
                        "A pass is as many rays as the training photos have pixels. Passes of the papers are those of their steps and rays over the "
                        "photos of this survey.",
-                   .columns = {"method", "steps, one field", "steps per block", "passes, one field", "passes, blocks", "published steps",
-                               "published rays per step", "published passes", "source"},
+                   .columns = {"method", "steps, one field", "steps per block", "passes, one field", "passes, blocks", "paper: steps",
+                               "rays per step", "passes", "source"},
                    .rows = {}};
   for (const PublishedTraining& published : PublishedTrainings()) {
     const auto pair = std::find_if(pairs.begin(), pairs.end(), [&published](const MethodPair& p) { return p.name == published.name; });

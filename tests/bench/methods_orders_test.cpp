@@ -69,15 +69,14 @@ TEST(CheckGridsOrder, ComparesEveryGridWithEveryNetwork) {
   EXPECT_EQ(blocks.other, Names{"mip-nerf-360 above tensorf"});
 }
 
-TEST(MethodVerdicts, TellOrdersThenEachMethodThenHowFarNetworksCame) {
+TEST(MethodVerdicts, TellOrdersThenHowFarNetworksCameThenEachMethod) {
   const Names verdicts = MethodVerdicts({Pair("nerf", 21.0, 22.0, true), Pair("instant-ngp", 25.0, 25.1)});
   ASSERT_EQ(verdicts.size(), 6U);
   EXPECT_EQ(verdicts[0], "Order of MatrixCity, several models above one: as published for nerf; no difference seen for instant-ngp.");
   EXPECT_EQ(verdicts[1], "Order of MatrixCity, grids and networks as one field: as published for instant-ngp above nerf.");
-  EXPECT_EQ(verdicts[3], "nerf: blocks against one field +1.00 dB, 22.00 against 21.00 dB, SSIM +0.025; published +1.28 dB, SSIM +0.079.");
-  EXPECT_NE(verdicts[4].find("no difference seen (+0.10 dB, noise up to 0.3 dB), 25.10 against 25.00 dB"), std::string::npos) << verdicts[4];
-  EXPECT_EQ(verdicts[5],
-            "nerf: one field made 900 steps, 0.45 % of the 200000 of its paper, so this is what it reaches in the time, not what it can reach.");
+  EXPECT_EQ(verdicts[3].find("nerf: one field made 900 steps, 0.45 % of the 200"), 0U) << verdicts[3];
+  EXPECT_EQ(verdicts[4], "nerf: blocks against one field +1.00 dB, 22.00 against 21.00 dB, SSIM +0.025; published +1.28 dB, SSIM +0.079.");
+  EXPECT_NE(verdicts[5].find("no difference seen (+0.10 dB, noise up to 0.3 dB), 25.10 against 25.00 dB"), std::string::npos) << verdicts[5];
 }
 
 TEST(MethodVerdicts, LeaveOutWhatFailedAndWhatIsNotPublished) {

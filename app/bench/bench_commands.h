@@ -11,6 +11,8 @@ int BenchThreads(const CommandState& state);
 void AddBench(CLI::App& app, CommandState& state);
 // The subcommands that train whole surveys.
 void AddStudyBenches(CLI::App& bench, CommandState& state);
+// One of them, which they add themselves.
+void AddMethodsBench(CLI::App& bench, CommandState& state);
 void AddNumericsBench(CLI::App& bench, CommandState& state);
 void AddPosesBench(CLI::App& bench, CommandState& state);
 void AddScaleBench(CLI::App& bench, CommandState& state);

@@ -72,7 +72,8 @@ int ReportParseError(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 void AddCommands(CLI::App& app, CommandState& state, AddBenchCommand add_bench) {
-  app.add_option("--config", state.config, "TOML file with options, or a preset: fast, default, quality, level (see configs/)")
+  app.add_option("--config", state.config,
+                 "TOML file with options, or a preset: fast, default, quality, level, or a method such as instant-ngp (see configs/)")
       ->type_name("FILE|NAME");
   app.add_option("--set", state.set, "set one option, for instance train.levels=10; may be repeated")
       ->type_name("SECTION.KEY=VALUE")

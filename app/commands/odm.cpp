@@ -41,7 +41,7 @@ double TimeBudgetSeconds(const std::string& text) {
 // Defaults, then the preset, then OpenDroneMap's options, then the file of --skyquilt-config, then --skyquilt-time-budget.
 OdmSettings SettingsOf(const CommandState& state, const odm::Request& request, const odm::Dataset& dataset, const odm::Effort& effort) {
   const std::string named = request.Text("--skyquilt-config");
-  const std::vector<std::string> presets = PresetNames();
+  const std::vector<std::string> presets = ConfigNames();
   const bool is_preset = std::find(presets.begin(), presets.end(), named) != presets.end() && !std::filesystem::is_regular_file(named);
   const std::string boundary = odm::ProvideBoundary(request, dataset);
   CommandState preset = state;

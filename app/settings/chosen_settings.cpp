@@ -23,7 +23,7 @@ NamedConfig FindConfig(const std::string& config) {
   if (config.empty()) return {};
   // A folder with the name of a preset (for instance an output folder "fast") is not a configuration.
   if (std::filesystem::exists(config) && !std::filesystem::is_directory(config)) return {.files = {config}, .overrides = {}};
-  const std::vector<std::string> presets = PresetNames();
+  const std::vector<std::string> presets = ConfigNames();
   if (std::find(presets.begin(), presets.end(), config) == presets.end()) {
     const std::string nearest = config::Nearest(config, presets);
     throw base::InputError(config, "no such file, and no preset of that name",

@@ -1,5 +1,5 @@
 // The presets: named configurations, stored in configs/ and built into the program. Most trade training time for quality; one is for photos that look
-// level.
+// level; those in configs/methods/ make the field that of a published method.
 #pragma once
 
 #include <string>
@@ -15,7 +15,11 @@ constexpr const char* kLevelPreset = "level";
 std::vector<std::string> QualityPresets();
 // These, and kLevelPreset.
 std::vector<std::string> PresetNames();
-// The options in which a preset differs from the defaults, without those that follow from others. Throws base::UsageError for an unknown name.
+// Networks first, the program's own field last. All name the same options, so that one method leaves nothing of another.
+std::vector<std::string> MethodNames();
+// All of these: what --config takes beside a file.
+std::vector<std::string> ConfigNames();
+// The options that a preset names, also where they have the default's value. Throws base::UsageError for an unknown name.
 std::vector<config::Override> PresetOverrides(const std::string& name);
 
 }  // namespace skyquilt::app

@@ -5,6 +5,7 @@
 
 #include "bench/study/common_pixels.h"
 #include "bench/study/compare.h"
+#include "bench/study/joined_tables.h"
 #include "bench/study/study_benches.h"
 #include "bench/study/study_tables.h"
 #include "core/page/curve_chart.h"
@@ -15,15 +16,6 @@ namespace {
 const VariantResult* Find(const std::vector<VariantResult>& results, const std::string& name) {
   const auto at = std::find_if(results.begin(), results.end(), [&](const VariantResult& r) { return r.name == name && r.failure.empty(); });
   return at == results.end() ? nullptr : &*at;
-}
-
-// log2 of the table size with which one field has about as many entries as all blocks together.
-int JoinedTableSize(const VariantResult& divided, int log2_table_size) {
-  double entries = 0.0;
-  for (const VariantField& field : divided.fields) {
-    if (field.log2_table_size > 0) entries += std::exp2(field.log2_table_size);
-  }
-  return entries > 0.0 ? std::min(24, static_cast<int>(std::lround(std::log2(entries)))) : log2_table_size;
 }
 
 std::string Against(const VariantResult& a, const VariantResult& b) {

@@ -340,6 +340,7 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
                         .scene_parameters = stored == kept.end() ? 0 : stored->second,
                         .log2_table_size = block == blocks.blocks.end() ? 0 : block->log2_table_size,
                         .steps = field.steps,
+                        .rays = field.rays,
                         .seconds = field.seconds,
                         .psnr_db = score == metrics.blocks.end() ? VariantResult::kNone : known(score->psnr_db),
                         .falls = static_cast<int>(field.falls.size()),

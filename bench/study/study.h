@@ -52,7 +52,7 @@ struct VariantField {
   int64_t parameters = 0, samples = 0;
   int64_t scene_parameters = 0;  // stored in the scene
   int log2_table_size = 0;       // 0: the context
-  int64_t steps = 0;
+  int64_t steps = 0, rays = 0;   // rays: 0 in results of older programs
   double seconds = 0.0;
   double psnr_db = std::numeric_limits<double>::quiet_NaN();  // held-out; NaN for the context
   // Of the training: how often it was taken back after a fall, how far its PSNR fell from its best so far, and how far below its best it ended.

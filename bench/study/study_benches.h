@@ -90,6 +90,21 @@ struct ScalesOptions {
 // ray per pixel: at equal time, at equal steps, and trained and rendered from several heights. Writes scales.png into the study's folder.
 StudyBench ScalesBench(Study& study, const ScalesOptions& options);
 
+struct MethodsOptions {
+  std::vector<StudiedPreset> methods;  // without their budgets, at least one
+  std::string blocks = "1x5";          // of the variants with several blocks
+  double budget_s = 300.0;             // training time of every variant, context included
+  std::vector<int> seeds;              // of training, each once; empty: that of the settings
+  // Simulated places: share of a photo that the next one sees too, along and across the lines, and flying heights, each with each. The study has the
+  // first of both already, every other pair a survey of its own in FOLDER/o60_a120. Empty: the settings' own.
+  std::vector<double> overlaps, altitudes_m;
+};
+// The changes to the settings for the first overlap and altitude.
+std::vector<config::Override> FirstSurvey(const std::vector<double>& overlaps, const std::vector<double>& altitudes_m);
+// Compares published methods, each as one field of the whole area and as blocks, at equal time and, where they have tables, at equal parameters; and
+// its orders with those of MatrixCity (Li et al. 2023), supplement, table 2. Writes methods.png into the study's folder.
+StudyBench MethodsBench(Study& study, const MethodsOptions& options);
+
 struct StudiedPrior {
   std::string name;     // of its weight in section [priors]
   double weight = 0.0;  // with which it is studied

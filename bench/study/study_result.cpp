@@ -68,6 +68,7 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"log2_table_size", field.log2_table_size},
                               {"samples", field.samples},
                               {"steps", field.steps},
+                              {"rays", field.rays},
                               {"seconds", field.seconds},
                               {"psnr_db", base::NumberOrNull(field.psnr_db)},
                               {"falls", field.falls},
@@ -119,7 +120,8 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .samples = field.at("samples").get<int64_t>(),
                              .scene_parameters = field.at("scene_parameters").get<int64_t>(),
                              .log2_table_size = field.at("log2_table_size").get<int>(),
-                             .steps = field.value("steps", int64_t{0}),  // absent in results of older programs, as are scales
+                             .steps = field.value("steps", int64_t{0}),  // absent in results of older programs, as are rays and scales
+                             .rays = field.value("rays", int64_t{0}),
                              .seconds = field.at("seconds").get<double>(),
                              .psnr_db = base::NanIfNull(field.at("psnr_db")),
                              .falls = field.value("falls", 0),

@@ -13,6 +13,15 @@
 namespace skyquilt::bench {
 namespace {
 
+double SamplesPerRay(const VariantResult& r) {
+  int64_t samples = 0, rays = 0;
+  for (const VariantField& field : r.fields) {
+    samples += field.samples;
+    rays += field.rays;
+  }
+  return rays > 0 ? static_cast<double>(samples) / static_cast<double>(rays) : VariantResult::kNone;
+}
+
 struct Column {
   const char* title;
   std::function<BenchCell(const VariantResult&)> cell;
@@ -32,6 +41,7 @@ const std::vector<Column>& Columns() {
       {"floater opacity", [](const VariantResult& r) { return BenchCell::Percent(r.floater_opacity, 2); }},
       {"training", [](const VariantResult& r) { return BenchCell::Seconds(r.train_seconds); }},
       {"samples", [](const VariantResult& r) { return BenchCell::Count(r.samples); }},
+      {"samples per ray", [](const VariantResult& r) { return BenchCell::Number(SamplesPerRay(r), 1); }},
       {"samples/s", [](const VariantResult& r) { return BenchCell::Count(r.samples_per_second); }},
       {"memory", [](const VariantResult& r) { return BenchCell::Bytes(r.peak_rss_bytes); }},
       {"parameters", [](const VariantResult& r) { return BenchCell::Count(r.parameters); }},

@@ -243,10 +243,14 @@ toml::table Parse(const std::string& text, const std::string& origin) {
 }  // namespace
 
 nlohmann::json TomlAsJson(const std::filesystem::path& file) {
-  const toml::table table = Parse(base::ReadFile(file), file.string());
-  std::ostringstream text;
-  text << toml::json_formatter{table};
-  return base::ParseJson(text.str());
+  return TomlTextAsJson(base::ReadFile(file), file.string());
+}
+
+nlohmann::json TomlTextAsJson(const std::string& text, const std::string& origin) {
+  const toml::table table = Parse(text, origin);
+  std::ostringstream json;
+  json << toml::json_formatter{table};
+  return base::ParseJson(json.str());
 }
 
 void ReadToml(const std::filesystem::path& file, const Sections& sections) {

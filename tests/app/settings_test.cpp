@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "app/settings/chosen_settings.h"
 #include "app/settings/load_settings.h"
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -116,6 +117,16 @@ TEST(Settings, PresetFilesParseAndTheDefaultOneIsTheDefaults) {
     EXPECT_NE(preset.Flat(), defaults.Flat()) << name;
     EXPECT_EQ(preset.Flat().size(), defaults.Flat().size());
   }
+}
+
+TEST(Settings, MethodsAreChosenByTheirNamesAndKeepTheRest) {
+  const coordinator::Settings settings =
+      ChosenSettings({}, {.config = "tensorf", .overrides = {{"run.time_budget_s", "60"}, {"train.hidden", "32"}}});
+  EXPECT_EQ(settings.train.encoding, "planes");
+  EXPECT_EQ(settings.train.hidden, 32) << "what the user names wins";
+  EXPECT_EQ(settings.run.time_budget_s, 60.0);
+  const std::string message = ErrorOf<base::InputError>([] { ChosenSettings({}, {.config = "instant-npg"}); });
+  EXPECT_NE(message.find("instant-ngp"), std::string::npos) << message;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/settings/load_settings.h"
 #include "app/settings/presets.h"
@@ -250,6 +251,41 @@ TEST(Presets, EqualTheirFilesAndAreValid) {
   EXPECT_TRUE(app::PresetOverrides("default").empty());
   EXPECT_FALSE(app::PresetOverrides("fast").empty() || app::PresetOverrides("level").empty());
   EXPECT_THROW(app::PresetOverrides("fastest"), base::UsageError);
+}
+
+TEST(Methods, AreAllFilesOfTheirFolderAndValid) {
+  const std::filesystem::path folder = std::filesystem::path(SKYQUILT_SOURCE_DIR) / "configs" / "methods";
+  const std::vector<std::string> names = app::MethodNames();
+  std::set<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) files.insert(entry.path().stem().string());
+  EXPECT_EQ(files, std::set<std::string>(names.begin(), names.end()));
+  for (const std::string& name : app::MethodNames()) {
+    coordinator::Settings settings;
+    for (const config::Override& entry : app::PresetOverrides(name)) settings.Set(entry);
+    EXPECT_NO_THROW(settings.Check()) << name;
+    coordinator::Settings from_file = app::LoadSettings({folder / (name + ".toml")}, {});
+    EXPECT_EQ(settings.Flat(), from_file.Flat()) << name;
+  }
+}
+
+// So that one method leaves nothing of another behind.
+TEST(Methods, NameTheSameOptions) {
+  const auto keys = [](const std::string& name) {
+    std::set<std::string> named;
+    for (const config::Override& entry : app::PresetOverrides(name)) named.insert(entry.key);
+    return named;
+  };
+  for (const std::string& name : app::MethodNames()) EXPECT_EQ(keys(name), keys("skyquilt")) << name;
+  EXPECT_TRUE(keys("skyquilt").contains("train.pyramid_start") && keys("skyquilt").contains("priors.planar"));
+}
+
+TEST(Methods, OfTheProgramItselfAreItsDefaults) {
+  coordinator::Settings settings, defaults;
+  for (const config::Override& entry : app::PresetOverrides("nerf")) settings.Set(entry);
+  EXPECT_NE(settings.Flat(), defaults.Flat());
+  EXPECT_EQ(settings.context.hidden, 256) << "the context follows";
+  for (const config::Override& entry : app::PresetOverrides("skyquilt")) settings.Set(entry);
+  EXPECT_EQ(settings.Flat(), defaults.Flat());
 }
 
 }  // namespace

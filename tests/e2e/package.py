@@ -74,7 +74,7 @@ def test(_, folder):
     root = folder / "root"
     output("dpkg-deb", "--extract", package, root, cwd=folder)
     documents = root / "usr/share/doc/skyquilt"
-    for path in ("copyright", "LICENSE", "README.md", "docs/licences.md", "docs/commands.md", "examples/configs/fast.toml", "examples/skyquilt.slurm"):
+    for path in ("copyright", "LICENSE", "README.md", "docs/licences.md", "docs/commands.md", "examples/configs/fast.toml", "examples/configs/methods/nerf.toml", "examples/skyquilt.slurm"):
         expect((documents / path).stat().st_size > 0, f"{path} is empty")
     programs = sorted(path.name for path in (root / "usr/bin").iterdir())
     expect(programs == ["skyquilt", "skyquilt-bench", "skyquilt-mpirun"], f"programs: {programs}")

@@ -113,6 +113,34 @@ def test(skyquilt, folder):
     skyquilt.call(*words)
     expect(digest(out / "runs") == before, "a finished variant was run again")
 
+    # Methods: their options come from configs/methods, and a survey from another height is added later.
+    out = folder / "methods"
+    skyquilt.call("bench", "methods", "--survey", survey, "-o", out, "--overlaps", "0.6", *SMALL, status=2, says="--place")
+    words = ["bench", "methods", "-o", out, *SMALL, "--set", "simulate.image_width=160"]
+    skyquilt.call(*words, "--blocks", "1x1", status=2, says="one field")
+    skyquilt.call(*words, "--methods", "tensorf,skyquilt", "--altitudes", "45", says="tensorf: blocks against one field")
+    result = check_page(out, "methods")
+    names = ["tensorf_one_a45", "tensorf_blocks_a45", "skyquilt_one_a45", "skyquilt_blocks_a45"]
+    expect([variant["name"] for variant in result["results"]] == names, result["results"])
+    for variant in result["results"]:
+        expect("failure" not in variant and variant["psnr_common_db"] is not None, variant)
+        expect(variant["blocks"] == (1 if "_one_" in variant["name"] else 2), variant)
+        expect(all(field["rays"] > 0 and field["samples"] > 0 for field in variant["fields"]), variant["fields"])
+        config = (out / "runs" / variant["name"] / "config.toml").read_text()
+        expect(('encoding = "planes"' in config) == variant["name"].startswith("tensorf"), config)
+    rows = [line.split(",")[:2] for line in (out / "methods_blocks.csv").read_text().splitlines()[1:]]
+    expect(rows == [[name, block] for name in ("tensorf", "skyquilt") for block in ("r0c0", "r0c1")], rows)
+    expect((out / "methods.png").is_file(), "no picture")
+    before = digest(out / "runs")
+    skyquilt.call(*words, "--methods", "tensorf", "--altitudes", "45,60")
+    expect(digest(out / "runs") == before, "a finished variant was run again")
+    result = check_page(out, "methods")
+    expect([variant["name"] for variant in result["results"]] == names[:2] + ["tensorf_one_a60", "tensorf_blocks_a60"], result["results"])
+    photos = [variant["training_photos"] for variant in result["results"]]
+    expect(photos[1] > photos[2], f"as many photos from both heights: {photos}")
+    for variant in result["results"]:
+        expect((out / variant["report"]).is_file(), variant["report"])
+
     # Priors: every seed has a place of its own, and the pictures remain when the scenes are removed.
     out = folder / "priors"
     words = ["bench", "priors", "-o", out, "--priors", "all", "--seeds", "5,6", *SMALL, "--set", "simulate.image_width=160"]

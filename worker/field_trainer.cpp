@@ -187,6 +187,8 @@ void FieldTrainer::FindOccupied() {
   // The lit cells and their neighbours, as not every cell of a surface was hit.
   field::OccupancyGrid lit = grid;
   lit.occupied.assign(grid.judged.begin(), grid.judged.end());
+  // A training that ended before any were marked may have density everywhere.
+  if (lit.OccupiedShare() == 0.0) lit.occupied.flip();
   lit.Dilate(1);
   std::vector<int64_t> chosen;
   std::vector<float> x, y, z, depth;

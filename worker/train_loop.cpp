@@ -64,7 +64,9 @@ bool TrainLoop::Run() {
   }
   if (!record_.ended_early && !good_.Empty() && guard_.EndsFallen()) EndAtBest();
   if (trainer_.sampler() != nullptr) {
+    const double start = Now();
     trainer_.FindOccupied();
+    record_.seconds += Now() - start;
   } else {
     MarkUnsampledCells();
   }

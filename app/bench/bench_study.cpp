@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "app/bench/bench_commands.h"
 #include "app/bench/study_command.h"
 #include "app/settings/duration.h"
 #include "app/settings/presets.h"

@@ -20,7 +20,10 @@
 #include "core/geo/ray_box.h"
 #include "core/image/image.h"
 #include "core/image/srgb.h"
+#include "core/render/ray_engine.h"
+#include "core/scene/field_file.h"
 #include "tests/support/nadir_photo.h"
+#include "worker/block_session.h"
 #include "worker/trainer.h"
 
 namespace skyquilt::worker {
@@ -141,6 +144,18 @@ class SmallSurvey : public ::testing::Test {
     base::ClearCancel();
     job.options.checkpoint_every_s = 60.0;
     train(job);
+  }
+  // What two rays straight down see in the scene of context.h5 and block.h5: the box's roof (26 m below them), and the ground beside it (30 m).
+  std::vector<render::RayColor> RoofAndGround(base::ThreadPool& threads) const {
+    const LoadedContext loaded = LoadContext(folder_ / "context.h5");
+    const render::TrainedField field = scene::GetField(checkpoint::ArchiveReader(folder_ / "block.h5"), folder_ / "block.h5", "");
+    render::FieldSet set;
+    set.blocks = {&field};
+    set.context = &loaded.field;
+    const std::vector<render::Ray> rays = {{{0, 0, 30}, {0, 0, -1}}, {{8, 7, 30}, {0, 0, -1}}};
+    std::vector<render::RayColor> out(rays.size());
+    render::RenderRays(set, rays, out, {}, threads);
+    return out;
   }
   std::string Bytes(const std::string& name) const {
     const checkpoint::ArchiveReader reader(folder_ / name);

@@ -43,14 +43,7 @@ TEST_F(TrainBlockTest, LearnsTheSceneThroughContextAndBlock) {
   for (const int photo : some) {
     EXPECT_EQ(std::memcmp(&part.Band(photo, 0, 0), &loaded.Band(photo, 0, 0), kTilesOfPhoto * sizeof(SurfaceInterval)), 0) << photo;
   }
-  const checkpoint::ArchiveReader reader(folder_ / "block.h5");
-  const render::TrainedField field = scene::GetField(reader, folder_ / "block.h5", "");
-  render::FieldSet set;
-  set.blocks = {&field};
-  set.context = &loaded.field;
-  const std::vector<render::Ray> rays = {{{0, 0, 30}, {0, 0, -1}}, {{8, 7, 30}, {0, 0, -1}}};
-  std::vector<render::RayColor> out(2);
-  render::RenderRays(set, rays, out, {}, threads);
+  const std::vector<render::RayColor> out = RoofAndGround(threads);
   EXPECT_NEAR(out[0].depth_median, 26.0F, 1.0F);
   EXPECT_NEAR(out[1].depth_median, 30.0F, 1.0F);
   EXPECT_GT(out[0].rgb_srgb[0], out[0].rgb_srgb[1] + 0.3F);

@@ -6,11 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/render/ray_engine.h"
 #include "core/scene/field_file.h"
 #include "tests/support/error_of.h"
 #include "tests/worker/small_survey.h"
-#include "worker/block_session.h"
 #include "worker/step/step_taus.h"
 #include "worker/trainer.h"
 
@@ -37,15 +35,9 @@ TEST_P(SamplerTest, LearnsTheSceneAndItsCells) {
   EXPECT_GT(block.final_psnr_db, 22.0);
   EXPECT_EQ(block.dropped_steps, 0);
   // Rendering marches through the cells that were found at the end: the box's roof and the ground are in them, the air is not.
-  const LoadedContext loaded = LoadContext(folder_ / "context.h5");
   const render::TrainedField field = scene::GetField(checkpoint::ArchiveReader(folder_ / "block.h5"), folder_ / "block.h5", "");
   EXPECT_LT(field.occupancy.OccupiedShare(), 0.8);
-  render::FieldSet set;
-  set.blocks = {&field};
-  set.context = &loaded.field;
-  const std::vector<render::Ray> rays = {{{0, 0, 30}, {0, 0, -1}}, {{8, 7, 30}, {0, 0, -1}}};
-  std::vector<render::RayColor> out(2);
-  render::RenderRays(set, rays, out, {}, threads);
+  const std::vector<render::RayColor> out = RoofAndGround(threads);
   EXPECT_NEAR(out[0].depth_median, 26.0F, 1.5F);
   EXPECT_NEAR(out[1].depth_median, 30.0F, 1.5F);
   EXPECT_GT(out[0].rgb_srgb[0], out[0].rgb_srgb[1] + 0.2F);

@@ -10,6 +10,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/log.h"
+#include "core/checkpoint/take_array.h"
 #include "core/scene/field_file.h"
 
 namespace skyquilt::worker {
@@ -231,16 +232,11 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
   const checkpoint::ArchiveReader& reader = session.reader;
   render::TrainedField loaded = scene::GetField(reader, usable, "");
   field::OptimizerState& state = trainer.state();
-  const auto take = [&](std::vector<float>& to, std::vector<float> from, const std::string& name) {
-    if (from.size() != to.size()) {
-      throw base::InputError(
-          usable, "array '" + name + "' has " + std::to_string(from.size()) + " numbers, but this configuration needs " + std::to_string(to.size()),
-          "Train again with --restart");
-    }
-    std::copy(from.begin(), from.end(), to.begin());  // copied, not moved: the target's buffers are aligned for random access
+  const auto take = [&](std::vector<float>& to, const std::vector<float>& from, const std::string& name) {
+    checkpoint::TakeArray(from, name, usable, "configuration", to);
   };
-  take(target.parameters.grid, std::move(loaded.parameters.grid), "grid");
-  take(target.parameters.networks, std::move(loaded.parameters.networks), "networks");
+  take(target.parameters.grid, loaded.parameters.grid, "grid");
+  take(target.parameters.networks, loaded.parameters.networks, "networks");
   take(state.grid_moment1, reader.Floats("grid_moment1"), "grid_moment1");
   take(state.grid_moment2, reader.Floats("grid_moment2"), "grid_moment2");
   take(state.network_moment1, reader.Floats("network_moment1"), "network_moment1");

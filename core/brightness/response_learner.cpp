@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/base/errors.h"
+#include "core/checkpoint/take_array.h"
 
 namespace skyquilt::brightness {
 namespace {
@@ -92,15 +92,7 @@ void ResponseLearner::Put(checkpoint::ArchiveWriter& writer) const {
 }
 
 void ResponseLearner::Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
-  const auto take = [&](auto& to, auto from, const char* name) {
-    if (from.size() != to.size()) {
-      throw base::InputError(
-          file,
-          std::string("array '") + name + "' has " + std::to_string(from.size()) + " numbers, but this survey needs " + std::to_string(to.size()),
-          "Train again with --restart");
-    }
-    to = std::move(from);
-  };
+  const auto take = [&](auto& to, const auto& from, const char* name) { checkpoint::TakeArray(from, name, file, "survey", to); };
   frozen_ = reader.IntAttribute("learner_frozen") != 0;
   take(moments_.first, reader.Floats("learner/gain_moment1"), "learner/gain_moment1");
   take(moments_.second, reader.Floats("learner/gain_moment2"), "learner/gain_moment2");

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
 
-#include "core/base/errors.h"
+#include "core/checkpoint/take_array.h"
 #include "core/kernel/kernels.h"
 
 namespace skyquilt::worker {
@@ -67,15 +66,7 @@ void AppearanceCodes::Put(checkpoint::ArchiveWriter& writer) const {
 
 void AppearanceCodes::Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
   if (!On()) return;
-  const auto take = [&](auto& to, auto from, const char* name) {
-    if (from.size() != to.size()) {
-      throw base::InputError(
-          file,
-          std::string("array '") + name + "' has " + std::to_string(from.size()) + " numbers, but this survey needs " + std::to_string(to.size()),
-          "Train again with --restart");
-    }
-    to = std::move(from);
-  };
+  const auto take = [&](auto& to, const auto& from, const char* name) { checkpoint::TakeArray(from, name, file, "survey", to); };
   take(state_.codes, reader.Floats("appearance/codes"), "appearance/codes");
   take(state_.moment1, reader.Floats("appearance/moment1"), "appearance/moment1");
   take(state_.moment2, reader.Floats("appearance/moment2"), "appearance/moment2");

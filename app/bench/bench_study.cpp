@@ -7,6 +7,7 @@
 #include "app/settings/presets.h"
 #include "bench/study/study_benches.h"
 #include "core/base/errors.h"
+#include "partition/block_grid.h"
 
 namespace skyquilt::app {
 namespace {
@@ -24,10 +25,13 @@ bench::StudyBench RunSingleVsMulti(bench::Study& study, const StudyFlags& flags)
 bench::StudyBench RunBlocks(bench::Study& study, const StudyFlags& flags) {
   bench::BlocksBenchOptions options;
   options.budget_s = BudgetOf(flags, options.budget_s, 10.0);
+  options.steps = flags.steps;
   if (flags.quick) {
-    options.per_side = {1, 2, 3};
+    options.blocks = {"1x1", "2x2", "3x3"};
     options.log2_table_sizes = {12, 15};
   }
+  if (!flags.divisions.empty()) options.blocks = flags.divisions;
+  if (!flags.log2_table_sizes.empty()) options.log2_table_sizes = flags.log2_table_sizes;
   study.UseSeeds(flags.seeds);
   return bench::BlocksBench(study, options);
 }
@@ -193,6 +197,32 @@ void AddPriorsOptions(CLI::App* command, StudyFlags* flags) {
       ->type_name("NAME,...");
 }
 
+void AddTableSizes(CLI::App* command, const std::string& help, StudyFlags* flags) {
+  command->add_option("--log2-table-sizes", flags->log2_table_sizes, help)->delimiter(',')->check(CLI::Range(4, 24))->type_name("N,...");
+}
+
+// The options that only `bench blocks` has.
+void AddBlocksOptions(CLI::App* command, StudyFlags* flags) {
+  command->add_option("--blocks", flags->divisions, "rows x columns to compare; default: 1x1,2x2,2x4,4x4, with --quick 1x1,2x2,3x3")
+      ->delimiter(',')
+      ->type_name("RxC,...");
+  AddTableSizes(command, "table sizes to compare: log2 of the entries per level; default: 15,17,19, with --quick 12,15", flags);
+  command
+      ->add_option("--steps", flags->steps,
+                   "steps of context and blocks together instead of a time, the same for every variant: for machines with other work")
+      ->check(CLI::Range(1, 1000000000))
+      ->type_name("N");
+}
+
+void CheckBlocks(const StudyFlags& flags) {
+  if (flags.steps > 0 && !flags.budget.empty())
+    throw base::UsageError("--steps and --time-budget exclude each other: every variant gets the one or the other");
+  for (const std::string& blocks : flags.divisions) {
+    if (partition::ParseBlockRequest(blocks).kind != partition::BlockRequestKind::kCount)
+      throw base::UsageError("--blocks " + blocks + ": give rows x columns, such as 1x1,2x2,4x4");
+  }
+}
+
 }  // namespace
 
 void AddStudyBenches(CLI::App& bench, CommandState& state) {
@@ -219,7 +249,10 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                    .budget = "3min",
                    .footer = "Examples:\n"
                              "  skyquilt bench blocks -o out/bench\n"
-                             "  skyquilt bench blocks --seeds 1,2,3 -o out/bench",
+                             "  skyquilt bench blocks --seeds 1,2,3 -o out/bench\n"
+                             "  skyquilt --config instant-ngp bench blocks --blocks 1x1,4x4 --steps 4000 -o out/bench",
+                   .options = AddBlocksOptions,
+                   .check = CheckBlocks,
                    .run = RunBlocks});
   AddStudyCommand(
       bench, state,
@@ -233,13 +266,10 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
        .options =
            [](CLI::App* command, StudyFlags* flags) {
              command->add_option("--blocks", flags->blocks, "rows x columns; default: as `partition` chooses")->type_name("RxC");
-             command
-                 ->add_option("--log2-table-sizes", flags->log2_table_sizes,
-                              "table sizes of the variants with one size for all blocks: log2 of the entries per level; default: 17,18, "
-                              "with --quick 13,15")
-                 ->delimiter(',')
-                 ->check(CLI::Range(4, 24))
-                 ->type_name("N,...");
+             AddTableSizes(command,
+                           "table sizes of the variants with one size for all blocks: log2 of the entries per level; default: 17,18, "
+                           "with --quick 13,15",
+                           flags);
              command->add_option("--voxels-per-entry", flags->voxels_per_entry, "finest voxels on the surface per table entry; default: 1,2,8")
                  ->delimiter(',')
                  ->check(CLI::Range(0.1, 1000.0))

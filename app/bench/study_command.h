@@ -16,12 +16,14 @@ struct StudyFlags {
   std::vector<double> voxels_per_entry;  // empty: the study's own
   std::vector<int> positions;            // empty: the study's own
   std::vector<std::string> parts = {"time", "steps"};
-  std::vector<std::string> variants;  // of --priors, --variants and --methods; empty: all
-  std::vector<std::string> within;    // of tradeoff: total times; empty: training times are studied
-  std::string shapes;                 // empty: the settings' own
-  std::vector<double> overlaps;       // of methods; empty: the settings' own
-  std::vector<double> altitudes;      // of methods; empty: the settings' own
-  std::vector<int> seeds;             // empty: the settings' own
+  std::vector<std::string> variants;   // of --priors, --variants and --methods; empty: all
+  std::vector<std::string> within;     // of tradeoff: total times; empty: training times are studied
+  std::vector<std::string> divisions;  // of blocks: rows x columns; empty: the study's own
+  int steps = 0;                       // of blocks: in place of the time; 0: by time
+  std::string shapes;                  // empty: the settings' own
+  std::vector<double> overlaps;        // of methods; empty: the settings' own
+  std::vector<double> altitudes;       // of methods; empty: the settings' own
+  std::vector<int> seeds;              // empty: the settings' own
   bool quick = false, restart = false, keep = false, json = false;
 };
 

@@ -8,6 +8,7 @@
 #include "bench/study/study_benches.h"
 #include "bench/study/study_tables.h"
 #include "core/page/curve_chart.h"
+#include "partition/block_grid.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -29,11 +30,24 @@ void AddBest(const std::vector<VariantResult>& results, BenchPage* page) {
   }
 }
 
+int CountOf(const std::string& blocks) {
+  const partition::BlockRequest request = partition::ParseBlockRequest(blocks);
+  return request.rows * request.columns;
+}
+
+// Every variant gets the same time, or the same steps, of which the context has its share and every block as many as the others.
+std::vector<config::Override> BudgetOf(const BlocksBenchOptions& options, double context_share, int blocks) {
+  if (options.steps == 0) return {{"run.time_budget_s", fmt::format("{}", options.budget_s)}};
+  const int context = std::max(1, static_cast<int>(std::lround(options.steps * context_share)));
+  return {{"run.time_budget_s", "0"},
+          {"context.steps", std::to_string(context)},
+          {"train.steps", std::to_string(std::max(1, (options.steps - context) / blocks))}};
+}
+
 }  // namespace
 
 StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options) {
   StudyBench bench;
-  const std::string budget = fmt::format("{}", options.budget_s);
   BenchTable grid{.name = "psnr",
                   .title = "PSNR by number of blocks and table size",
                   .note = "Columns: entries per level of each block's tables.",
@@ -41,16 +55,17 @@ StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options) {
                   .rows = {}};
   std::vector<page::Curve> curves;
   for (const int log2 : options.log2_table_sizes) grid.columns.push_back(fmt::format("2^{}", log2));
-  for (const int side : options.per_side) {
-    std::vector<BenchCell> row = {BenchCell::Text(fmt::format("{0} x {0}", side))};
+  for (const std::string& blocks : options.blocks) {
+    std::vector<BenchCell> row = {BenchCell::Text(blocks)};
     for (const int log2 : options.log2_table_sizes) {
       const std::string tables = std::to_string(log2);
-      bench.results.push_back(study.Run({.name = fmt::format("{0}x{0}_t{1}", side, log2),
-                                         .label = fmt::format("{0} x {0}, 2^{1}", side, log2),
-                                         .overrides = {{"partition.blocks", fmt::format("{0}x{0}", side)},
-                                                       {"partition.min_log2_table_size", tables},
-                                                       {"partition.max_log2_table_size", tables},
-                                                       {"run.time_budget_s", budget}}}));
+      Variant variant{
+          .name = fmt::format("{}_t{}", blocks, log2),
+          .label = fmt::format("{}, 2^{}", blocks, log2),
+          .overrides = {{"partition.blocks", blocks}, {"partition.min_log2_table_size", tables}, {"partition.max_log2_table_size", tables}}};
+      for (config::Override& entry : BudgetOf(options, study.settings().run.context_share, CountOf(blocks)))
+        variant.overrides.push_back(std::move(entry));
+      bench.results.push_back(study.Run(variant));
       row.push_back(BenchCell::Number(bench.results.back().psnr_db, 2, "dB"));
     }
     grid.rows.push_back(std::move(row));
@@ -58,15 +73,15 @@ StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options) {
   ScoreCommonPixels(study.folder(), PointersTo(bench.results));
   for (size_t c = 0; c < options.log2_table_sizes.size(); ++c) {
     page::Curve curve{.name = fmt::format("2^{}", options.log2_table_sizes[c]), .points = {}, .marks = true};
-    for (size_t r = 0; r < options.per_side.size(); ++r)
-      curve.points.emplace_back(options.per_side[r] * options.per_side[r], grid.rows[r][c + 1].value);
+    for (size_t r = 0; r < options.blocks.size(); ++r) curve.points.emplace_back(CountOf(options.blocks[r]), grid.rows[r][c + 1].value);
     curves.push_back(std::move(curve));
   }
   BenchPage& page = bench.page;
   page.name = "blocks";
   page.title = "Number of blocks and table size";
-  page.lead =
-      fmt::format("Compares numbers of blocks and sizes of each block's tables, with {:.0f} s of training for every variant.", options.budget_s);
+  page.lead = fmt::format("Compares numbers of blocks and sizes of each block's tables, with {} for every variant.",
+                          options.steps > 0 ? fmt::format("{} training steps of context and blocks together", options.steps)
+                                            : fmt::format("{:.0f} s of training", options.budget_s));
   AddBest(bench.results, &page);
   page.sections.push_back({.id = "grid",
                            .title = "Number of blocks and table size",

@@ -24,9 +24,10 @@ struct SingleVsMultiOptions {
 StudyBench SingleVsMulti(Study& study, const SingleVsMultiOptions& options);
 
 struct BlocksBenchOptions {
-  std::vector<int> per_side = {1, 2, 3, 4};
+  std::vector<std::string> blocks = {"1x1", "2x2", "2x4", "4x4"};  // rows x columns
   std::vector<int> log2_table_sizes = {15, 17, 19};
   double budget_s = 180.0;
+  int steps = 0;  // of all fields of a variant together, context included, in place of budget_s; 0: by time
 };
 // Compares numbers of blocks and table sizes. Source: MatrixCity, supplement, table 3.
 StudyBench BlocksBench(Study& study, const BlocksBenchOptions& options);

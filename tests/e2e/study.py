@@ -49,6 +49,15 @@ def test(skyquilt, folder):
     skyquilt.call(*words, "--set", "train.hidden=32", status=2, says="other settings")
     skyquilt.call("bench", "blocks", "--survey", folder / "nowhere", "-o", folder / "none", status=3)
     skyquilt.call("bench", "blocks", "--survey", survey, "--place", "town", "-o", folder / "none", status=2)
+    skyquilt.call("bench", "blocks", "--blocks", "1x1,auto", "-o", folder / "none", status=2, says="--blocks auto")
+    skyquilt.call("bench", "blocks", "--steps", "9", "--time-budget", "1s", "-o", folder / "none", status=2, says="exclude each other")
+
+    # Equal steps: those of all blocks together are the same.
+    out = folder / "blocks"
+    skyquilt.call("bench", "blocks", "--survey", survey, "-o", out, "--blocks", "1x1,1x2", "--log2-table-sizes", "13", "--steps", "40", *SMALL[:1], *SMALL[3:])
+    for variant in check_page(out, "blocks")["results"]:
+        steps = {field["name"]: field["steps"] for field in variant["fields"]}
+        expect(steps.pop("context") == 6 and sum(steps.values()) == 34, variant)
 
     # Parameters kept in the scene against parameters trained. Two seeds of one survey, of which the first goes on with what there is.
     out = folder / "capacity"

@@ -32,6 +32,9 @@ std::vector<config::Field<ProductOptions>> ProductOptions::Fields() {
        "are always above the ellipsoid"},
       {"boundary", &O::boundary, Range(),
        "file with polygons (GeoJSON or GeoPackage) that limit orthophoto, surface model, mesh, cloud, tiles and terrain; empty: the whole scene"},
+      {"plain_surround", &O::plain_surround, Range(),
+       "whether videos, views along a path, tours and the viewer's exact frames fade to a plain ground and sky where fewer than three photos look; "
+       "false: what the scene extrapolates there. Maps, photos' views and scores never fade"},
       {"video_path", &O::video_path, Range::OneOf({"orbit", "flyover", "cameras"}),
        "camera path of the video: orbit circles the scene, flyover crosses it, cameras follows the photos"},
       {"video_seconds", &O::video_seconds, Range{0, 3600}, "length of the video in seconds; 0: no video"},

@@ -29,6 +29,7 @@ struct ProductOptions {
   double crop_m = 0.0;                  // metres cut off the orthophoto all round from where two photos see the ground
   std::string vertical = "as-tagged";   // what heights of maps, surface and buildings are above: as-tagged, ellipsoid or egm96
   std::string boundary;                 // GeoJSON or GeoPackage with polygons that limit all products; empty: the whole scene
+  bool plain_surround = true;           // core/scene/surround.h for videos, views along a path, tours and exact frames of the viewer
   std::string video_path = "orbit";     // "orbit", "flyover" or "cameras"
   double video_seconds = 5.0;           // 0: no video
   int video_fps = 12;

@@ -78,6 +78,7 @@ void View(comm::Communicator& comm, const ViewOptions& options) {
                  .before = options.before,
                  .run = options.run,
                  .exposure = options.exposure,
+                 .plain_surround = options.plain_surround,
                  .verbose = options.verbose,
                  .quiet = options.quiet},
                 data);

@@ -16,6 +16,7 @@ struct ViewOptions {
   std::string listen;  // empty: 127.0.0.1
   int port = 0;        // 0: a free one
   std::string exposure = "normal";
+  bool plain_surround = true;
   std::string front_end;  // folder with the files of the front end; empty: those in the program
   coordinator::RunOptions run;
   bool edit = false;  // the tour may be changed, by whoever opens the link for that

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/order_statistics.h"
+#include "core/survey/view_kind.h"
 
 namespace skyquilt::worker {
 namespace {
@@ -21,6 +22,7 @@ struct Splat {
   Eigen::Vector3d x;
   Eigen::Vector3f srgb;
   int column = 0;  // of its tile
+  int photo = 0;
 };
 
 // Of the tiles of a training photo that show the ground, row by row.
@@ -33,7 +35,7 @@ std::vector<Splat> SplatsOf(const RaySource& source, const scene::HeightMap& poi
       Eigen::Vector3d origin, direction, x;
       source.RayThrough(photo, source.TileCentre({photo, static_cast<int16_t>(column), static_cast<int16_t>(row)}), &origin, &direction);
       if (direction.z() > -kSteepEnough || !points.Intersect(origin, direction, &x) || !srgb.allFinite()) continue;
-      splats.push_back({x, srgb, column});
+      splats.push_back({x, srgb, column, photo});
     }
   }
   return splats;
@@ -78,6 +80,21 @@ class SplatsOfPhotos {
   size_t part_size_;
   std::vector<std::vector<Splat>> part_;
 };
+
+// The least of each cell and those beside it, 0 beyond the grid: takes back by how much splats were spread.
+std::vector<uint8_t> LeastAround(const base::GridShape& shape, const std::vector<uint8_t>& values) {
+  std::vector<uint8_t> least(values.size(), 0);
+  for (int row = kReach; row < shape.rows - kReach; ++row) {
+    for (int column = kReach; column < shape.columns - kReach; ++column) {
+      uint8_t value = 255;
+      for (int v = row - kReach; v <= row + kReach; ++v) {
+        for (int u = column - kReach; u <= column + kReach; ++u) value = std::min(value, values[shape.Index(u, v)]);
+      }
+      least[shape.Index(column, row)] = value;
+    }
+  }
+  return least;
+}
 
 // [elevation][azimuth][channel] of the sky in the training photos; empty when they show none.
 std::vector<float> SkyOf(const RaySource& source, const survey::Survey& survey, const PointRanges& ranges) {
@@ -133,6 +150,8 @@ scene::Background MakeBackground(const RaySource& source, const survey::Survey& 
   if (!(cell_m > 0.0)) return background;
   const geo::PlaneGrid grid(low, cell_m, size);
   std::vector<double> sum(3 * grid.size(), 0.0), count(grid.size(), 0.0);
+  std::vector<int> last_photo(grid.size(), -1);
+  background.photos.assign(grid.size(), 0);
   const auto add = [&](const Splat& splat) {
     const int column = std::min(grid.columns - 1, static_cast<int>((splat.x.x() - low.x()) / cell_m));
     const int row = std::min(grid.rows - 1, static_cast<int>((splat.x.y() - low.y()) / cell_m));
@@ -141,10 +160,14 @@ scene::Background MakeBackground(const RaySource& source, const survey::Survey& 
         const size_t cell = grid.Index(u, v);
         for (size_t c = 0; c < 3; ++c) sum[3 * cell + c] += static_cast<double>(splat.srgb[static_cast<Eigen::Index>(c)]);
         count[cell] += 1.0;
+        // Splats come photo by photo.
+        if (std::exchange(last_photo[cell], splat.photo) != splat.photo && background.photos[cell] < 255) ++background.photos[cell];
       }
     }
   };
   splats.ForEach(add);
+  // Photos that look level show the ground with few of their tiles, and what stands on it beyond.
+  background.photos = survey::LooksLevel(survey) ? std::vector<uint8_t>() : LeastAround(grid, background.photos);
   for (size_t i = 0; i < sum.size(); ++i) sum[i] /= std::max(1.0, count[i / 3]);
   std::vector<double> heights;
   heights.reserve(grid.size());

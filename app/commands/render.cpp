@@ -78,6 +78,9 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
   scene::Appearance appearance = products::AppearanceOf(options.exposure, scene.info());
   appearance.normals = images.normals && products::NeedsRenderedNormals(*images.normals);
   const products::ViewRenderer renderer = products::RendererOf(scene, appearance, threads);
+  scene::Appearance for_people = appearance;
+  for_people.plain_surround = options.plain_surround;
+  const products::ViewRenderer path_renderer = products::RendererOf(scene, for_people, threads);
   const int path_width = flags.width > 0 ? flags.width / 2 * 2 : options.video_width;
   const int path_height = std::max(2, path_width * options.video_height / options.video_width / 2 * 2);
   const bool along_cameras = flags.video && flags.path.empty() && options.video_path == "cameras";
@@ -103,9 +106,9 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     const std::string stem = std::filesystem::path(flags.path).stem().string();
     if (flags.video) {
       std::filesystem::create_directories(renders);
-      LogStats(products::RenderVideo(renderer, views, options.video_fps, renders / (stem + ".mp4")), renders / (stem + ".mp4"));
+      LogStats(products::RenderVideo(path_renderer, views, options.video_fps, renders / (stem + ".mp4")), renders / (stem + ".mp4"));
     } else {
-      LogStats(products::RenderViews(renderer, views, renders / stem, images, threads), renders / stem);
+      LogStats(products::RenderViews(path_renderer, views, renders / stem, images, threads), renders / stem);
     }
   } else if (flags.video) {
     products::ProductOptions video = options;
@@ -115,7 +118,7 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
     std::filesystem::create_directories(renders);
     const std::filesystem::path file = renders / (options.video_path + ".mp4");
     const std::vector<products::View> views = along_cameras ? products::PathAlongCameras(*survey, video) : products::BuiltInPath(scene.info(), video);
-    LogStats(products::RenderVideo(renderer, views, options.video_fps, file), file);
+    LogStats(products::RenderVideo(path_renderer, views, options.video_fps, file), file);
   }
   if (flags.ortho || flags.dsm) {
     products::ProductOptions asked = options;

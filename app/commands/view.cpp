@@ -27,6 +27,7 @@ void RunView(const CommandState& state, const ViewFlags& flags, const std::vecto
   options.edit = flags.edit;
   options.front_end = flags.front_end;
   options.exposure = settings.products.exposure;
+  options.plain_surround = settings.products.plain_surround;
   options.run = settings.run;
   options.verbose = state.verbose;
   options.quiet = state.quiet;

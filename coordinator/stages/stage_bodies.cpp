@@ -146,7 +146,9 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
     const std::filesystem::path file = folder / (options.video_path + ".mp4");
     const std::vector<products::View> views =
         along_cameras ? products::PathAlongCameras(survey, options) : products::BuiltInPath(scene.info(), options);
-    const products::RenderStats stats = products::RenderVideo(products::RendererOf(scene, appearance, threads), views, options.video_fps, file);
+    scene::Appearance for_people = appearance;
+    for_people.plain_surround = options.plain_surround;
+    const products::RenderStats stats = products::RenderVideo(products::RendererOf(scene, for_people, threads), views, options.video_fps, file);
     base::LogInfo("video of {} frames, {} rays/s: {}", stats.views, base::FormatCount(stats.RaysPerSecond()), file.string());
   }
   return StageStamp::kDone;

@@ -226,7 +226,7 @@ std::vector<Stage> MakeTable() {
        .required = {{SceneFile, "merge"}},
        .inputs =
            [](const Pipeline& pipeline) {
-             FlatOptions inputs = Select(pipeline.settings.Flat(), {"tour.", "products.exposure"});
+             FlatOptions inputs = Select(pipeline.settings.Flat(), {"tour.", "products.exposure", "products.plain_surround"});
              inputs["scene"] = FileIdentity(pipeline.project.StampFile("merge"));
              inputs["products"] = FileIdentity(pipeline.project.StampFile("products"));
              inputs["surface"] = FileIdentity(pipeline.project.StampFile("surface"));

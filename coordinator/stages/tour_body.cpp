@@ -105,7 +105,7 @@ void Export(Pipeline& pipeline, const TourRequest& request) {
   SceneSession session(pipeline.comm, project.SceneFile(), settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   const tour::ExportParts parts = pipeline.tour_parts(project);
   ProvideTour(project, session.scene().info(), parts, request.auto_stops);
-  const tour::PictureField field = tour::FieldOf(session.scene(), project.SceneFile(), session.threads());
+  const tour::PictureField field = tour::FieldOf(session.scene(), project.SceneFile(), settings.products.plain_surround, session.threads());
   tour::ExportInput input{.project = project.folder,
                           .work = project.TourWorkFolder(),
                           .out = request.out,

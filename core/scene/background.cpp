@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kMean[3] = {"background_r", "background_g", "background_b"};
 constexpr const char* kHeights = "background/heights";
 constexpr const char* kColors = "background/colors";
+constexpr const char* kPhotos = "background/photos";
 constexpr const char* kSky = "background/sky";
 
 // Between the centres of the sky's cells.
@@ -59,6 +60,7 @@ void PutBackground(const Background& background, checkpoint::ArchiveWriter& writ
   writer.SetAttribute("background_cell_m", grid.cell_m);
   writer.Put(kHeights, background.surface.heights(), {grid.rows, grid.columns});
   writer.Put(kColors, background.rgb_srgb, {grid.rows, grid.columns, 3});
+  if (!background.photos.empty()) writer.Put(kPhotos, background.photos, {grid.rows, grid.columns});
 }
 
 Background GetBackground(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
@@ -86,6 +88,10 @@ Background GetBackground(const checkpoint::ArchiveReader& reader, const std::fil
     throw base::InputError(file, std::string("its background is damaged: ") + error.what(), fix);
   }
   background.rgb_srgb = reader.Floats(kColors);
+  if (reader.Has(kPhotos)) {
+    if (reader.Shape(kPhotos) != shape) throw base::InputError(file, "the background's numbers of photos have another size", fix);
+    background.photos = reader.Bytes(kPhotos);
+  }
   return background;
 }
 

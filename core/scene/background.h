@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct Background {
   // east over north all round. Empty: no photo shows sky.
   static constexpr int kSkyRows = 9, kSkyColumns = 36;
   std::vector<float> sky_srgb = {};
+  // [row][column] of the cells of `surface`: training photos that show the cell, 255 for more. Empty: not known, as where photos
+  // look level, and in scenes of older programs.
+  std::vector<uint8_t> photos = {};
 
   // Display values where the ray meets the surface, or of the sky in its direction; the mean colour when it does neither.
   std::array<float, 3> Color(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu) const;

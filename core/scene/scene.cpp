@@ -19,6 +19,7 @@
 #include "core/scene/point_query.h"
 #include "core/scene/ray_service.h"
 #include "core/scene/scene_file.h"
+#include "core/scene/surround.h"
 
 namespace skyquilt::scene {
 namespace {
@@ -190,9 +191,13 @@ void Scene::RenderRaysOverBackground(std::span<const render::Ray> rays, std::spa
   SKYQUILT_CHECK(rays.size() == out.size(), std::to_string(rays.size()) + " rays, " + std::to_string(out.size()) + " results");
   const float background_gain = impl_->BackgroundGain(appearance.look);
   impl_->Answer(rays, out, appearance, threads);
+  std::optional<Surround> surround;
+  if (appearance.plain_surround) surround.emplace(impl_->background);
   for (size_t i = 0; i < out.size(); ++i) {
+    if (surround) surround->Fade(rays[i], &out[i]);
     if (out[i].opacity >= 1.0F) continue;
-    std::array<float, 3> behind = impl_->background.Color(rays[i].origin_enu, rays[i].direction_enu);
+    std::array<float, 3> behind =
+        surround ? surround->Behind(rays[i].origin_enu, rays[i].direction_enu) : impl_->background.Color(rays[i].origin_enu, rays[i].direction_enu);
     if (background_gain != 1.0F) {
       for (float& value : behind) value = image::SrgbFromLinear(background_gain * image::LinearFromSrgb(value));
     }

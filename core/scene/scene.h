@@ -77,6 +77,7 @@ struct Appearance {
   Rendition look = Rendition::kNormal;
   std::array<float, 3> log_gain = {0.0F, 0.0F, 0.0F};  // additional exposure per colour: natural logarithm of a factor on linear light
   bool normals = false;                                // also the normals of render::RayColor, which takes longer
+  bool plain_surround = false;                         // over a background: core/scene/surround.h where no photo looked
   double depths_to_opacity = 0.0;                      // above 0: only depths, of rays that end there (render::EngineOptions::DepthsOnly)
 };
 

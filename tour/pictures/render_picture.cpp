@@ -27,13 +27,15 @@ std::string IdentityOf(const std::filesystem::path& scene_h5) {
 
 }  // namespace
 
-PictureField FieldOf(const scene::Scene& scene, const std::filesystem::path& scene_h5, base::ThreadPool& threads) {
+PictureField FieldOf(const scene::Scene& scene, const std::filesystem::path& scene_h5, bool plain_surround, base::ThreadPool& threads) {
   PictureField field;
-  field.identity = IdentityOf(scene_h5);
+  field.identity = IdentityOf(scene_h5) + (plain_surround ? " plain surround" : "");
   field.cones = scene.info().scales.Cones();
   if (scene.statistics().ranks > 1) field.batch_rays = kRaysOfRanks;
-  field.caster = [&scene, &threads](const std::string& exposure) {
-    return products::BackgroundCasterOf(scene, products::AppearanceOf(exposure, scene.info()), threads);
+  field.caster = [&scene, &threads, plain_surround](const std::string& exposure) {
+    scene::Appearance appearance = products::AppearanceOf(exposure, scene.info());
+    appearance.plain_surround = plain_surround;
+    return products::BackgroundCasterOf(scene, appearance, threads);
   };
   return field;
 }

@@ -22,7 +22,7 @@ namespace skyquilt::tour {
 
 // What pictures are rendered from. A test needs no scene for it.
 struct PictureField {
-  std::string identity;         // another one when the scene's content is another
+  std::string identity;         // another one when the scene's content or its surround is another
   bool cones = false;           // scene::Scales::Cones
   size_t batch_rays = 1 << 17;  // rendered at a time
   // Renders rays over the background in an exposure that is given as products.exposure. Throws base::UsageError for one that is not allowed.
@@ -30,8 +30,8 @@ struct PictureField {
 };
 
 // Of a scene that was loaded from this file, on this process or on other ranks, in memory or paged. Keeps references to scene and threads.
-// Throws base::InputError when the file is gone.
-PictureField FieldOf(const scene::Scene& scene, const std::filesystem::path& scene_h5, base::ThreadPool& threads);
+// plain_surround: see scene::Appearance. Throws base::InputError when the file is gone.
+PictureField FieldOf(const scene::Scene& scene, const std::filesystem::path& scene_h5, bool plain_surround, base::ThreadPool& threads);
 
 struct RenderedPicture {
   image::Image8 color;  // display values

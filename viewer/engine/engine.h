@@ -22,6 +22,7 @@ struct EngineInput {
   std::optional<coordinator::Project> before;
   coordinator::RunOptions run;      // threads and memory; with `before`, each scene gets half of the memory
   std::string exposure = "normal";  // as `render --exposure`
+  bool plain_surround = true;       // of exact frames, see products.plain_surround
   bool verbose = false, quiet = false;
 };
 

@@ -39,6 +39,7 @@ SceneHolder::SceneHolder(const EngineInput& input, ProjectData& data)
     : comm_(input.comm),
       run_(input.before ? WithHalfTheMemory(input.run) : input.run),
       exposure_(input.exposure),
+      plain_surround_(input.plain_surround),
       verbose_(input.verbose),
       quiet_(input.quiet),
       data_(data),
@@ -149,6 +150,7 @@ void SceneHolder::LoadPlace(Which which) {
       }
       base::LogWarning("the earlier project has no photo '{}': its exact frames have normal brightness", exposure_);
     }
+    appearance.plain_surround = plain_surround_;
     const SceneFrame frame{.cones = info.scales.Cones(), .min_enu = info.min_enu, .max_enu = info.max_enu, .scene_from_main = std::nullopt};
     const BatchSize batch(session->threads().size(), ranks ? place.comm->size() - 1 : 0);
     place.loaded = std::make_unique<Loaded>(Loaded{.session = std::move(session), .appearance = appearance, .frame = frame, .batch = batch});

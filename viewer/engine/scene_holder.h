@@ -96,6 +96,7 @@ class SceneHolder : public Renderer {
   comm::Communicator& comm_;
   coordinator::RunOptions run_;
   std::string exposure_;
+  bool plain_surround_ = true;
   bool verbose_, quiet_;
   ProjectData& data_;
   OneProcess alone_;

@@ -93,8 +93,10 @@ class BackgroundFile : public ::testing::Test {
 TEST_F(BackgroundFile, BringsBackTheSameColours) {
   Background background{Slope(), {}, {0.25F, 0.5F, 0.75F}};
   for (int i = 0; i < 600; ++i) background.rgb_srgb.push_back(static_cast<float>(i) / 600.0F);
+  for (int i = 0; i < 200; ++i) background.photos.push_back(static_cast<uint8_t>(i));
   Write(background);
   const Background read = GetBackground(checkpoint::ArchiveReader(file_), file_);
+  EXPECT_EQ(read.photos, background.photos);
   for (const Eigen::Vector3d& direction : {Eigen::Vector3d(0.0, 0.0, -1.0), Eigen::Vector3d(0.6, 0.0, -0.8), Eigen::Vector3d(0.0, 0.0, 1.0)}) {
     EXPECT_EQ(read.Color({7.0, 8.0, 50.0}, direction), background.Color({7.0, 8.0, 50.0}, direction));
   }
@@ -144,6 +146,16 @@ TEST_F(BackgroundFile, IsRefusedWhenItsPartsDisagree) {
   checkpoint::ArchiveWriter writer("scene", 1);
   writer.Put("background/heights", heights, {4, 3});
   writer.Put("background/colors", background.rgb_srgb, {10, 20, 3});
+  writer.Commit(file_);
+  EXPECT_THROW(GetBackground(checkpoint::ArchiveReader(file_), file_), base::InputError);
+}
+
+TEST_F(BackgroundFile, IsRefusedWithNumbersOfPhotosForOtherCells) {
+  const Background background{Slope(), std::vector<float>(600), {}};
+  const std::vector<uint8_t> photos(12, 1);
+  checkpoint::ArchiveWriter writer("scene", 1);
+  PutBackground(background, writer);
+  writer.Put("background/photos", photos, {4, 3});
   writer.Commit(file_);
   EXPECT_THROW(GetBackground(checkpoint::ArchiveReader(file_), file_), base::InputError);
 }

@@ -41,7 +41,7 @@ struct SceneField {
   explicit SceneField(const viewer::WholeScene& what) {
     viewer::WriteWholeScene(folder / "scene.h5", what);
     scene = std::make_unique<scene::Scene>(scene::Scene::Load(folder / "scene.h5"));
-    field = FieldOf(*scene, folder / "scene.h5", threads);
+    field = FieldOf(*scene, folder / "scene.h5", false, threads);
   }
 
   TemporaryFolder folder;

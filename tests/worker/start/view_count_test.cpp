@@ -150,6 +150,11 @@ TEST_F(ViewCountTest, TheBackgroundShowsCoarseColoursWhereOnePhotoLookedAndNearO
   const scene::Background parts = MakeBackground(*source_, survey_, SurfaceOfPoints(survey_), {}, 1, threads, 1);
   EXPECT_EQ(parts.rgb_srgb, background.rgb_srgb);
   EXPECT_EQ(parts.mean_srgb, background.mean_srgb);
+  EXPECT_EQ(parts.photos, background.photos);
+  const auto photos_at = [&](double x) { return background.photos[background.surface.Around(x, 0.0).cell[0]]; };
+  EXPECT_EQ(photos_at(-24.0), 1);
+  EXPECT_EQ(photos_at(24.0), 2);
+  EXPECT_EQ(photos_at(72.0), 1);
   const scene::Background flat = MakeBackground(*source_, survey_, {}, {}, 1, threads);
   EXPECT_EQ(flat.Color({0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}), flat.mean_srgb) << "without points";
 }

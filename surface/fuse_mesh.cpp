@@ -272,7 +272,9 @@ FusedMesh FuseMesh(const SurfaceInput& input, const DepthViews& views, double vo
   }
   Mesh mesh = MergeMeshes(std::move(meshes));
   if (input.boundary && mesh.triangle.empty() && any) {
-    throw base::UsageError("products.boundary leaves nothing of the surface: the boundary does not meet it. Give a polygon that does, or none");
+    throw base::UsageError(
+        "the boundary leaves nothing of the surface: it does not meet it. Give products.boundary a polygon that does, or none, or set "
+        "surface.edge_photos to 0");
   }
   const bool level = survey::LooksLevel(*input.survey);
   // Things along a wall or in a room are small, and without a place on Earth the frame's metres say nothing.

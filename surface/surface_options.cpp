@@ -19,6 +19,10 @@ std::vector<config::Field<SurfaceOptions>> SurfaceOptions::Fields() {
       {"max_spread_voxels", &O::max_spread_voxels, Range{0.1, 1e6},
        "nor depths where the surface is blurred by more than this along the ray; where photos look level, across the surface"},
       {"min_views", &O::min_views, Range{1, 100}, "parts of the surface that fewer views saw are dropped"},
+      {"edge_photos", &O::edge_photos, Range{0, 100},
+       "the surface ends where fewer photos see the ground, or two where photos overlap little; 0: where the scene ends. Not where photos look "
+       "level, "
+       "nor with a boundary or ignored ground"},
       {"min_island_m2", &O::min_island_m2, Range{0, 1e9}, "separate pieces of the surface with a smaller area are dropped, square metres"},
       {"fill_gaps", &O::fill_gaps, Range(), "close gaps, such as panes and woods, with a coarser surface, except where photos look level"},
       {"texel_gsd", &O::texel_gsd, Range{0.1, 1000}, "pixels of the texture, in ground sampling distances"},

@@ -24,6 +24,7 @@ struct SurfaceOptions {
   double min_opacity = 0.85;        // depths of pixels with a lower opacity are not used; at least 0.85, where a ray reaches the back of a surface
   double max_spread_voxels = 20.0;  // nor where the surface is blurred by more than this along the ray; where photos look level, across the surface
   int min_views = 3;                // faces seen by fewer views are dropped
+  int edge_photos = 3;              // the surface ends where fewer see the ground; 0: not for that reason
   double min_island_m2 = 1.0;       // as are separate pieces with a smaller area; where photos look level, also at most 12 x 12 voxels
   bool fill_gaps = true;            // what is left open is closed by a coarser surface; not where photos look level
   double texel_gsd = 1.0;           // pixels of the texture, in ground sampling distances

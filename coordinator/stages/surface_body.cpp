@@ -5,6 +5,7 @@
 #include "coordinator/scheduler/field_context.h"
 #include "coordinator/stages/product_area.h"
 #include "coordinator/stages/stage_bodies.h"
+#include "coordinator/stages/surface_edge.h"
 #include "core/base/amounts.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
@@ -51,6 +52,9 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   input.caster = products::CasterOf(scene, products::AppearanceOf(settings.products.exposure, scene.info()), session.threads());
   input.depth_caster = products::CasterOf(scene, {.depths_to_opacity = settings.surface.min_opacity}, session.threads());
   input.boundary = products::BoundaryOf(grid, OptionsOfProducts(pipeline));
+  if (!input.boundary && settings.surface.edge_photos > 0) {
+    input.boundary = SurfaceEdge(scene.background(), scene.info(), grid, settings.surface.edge_photos);
+  }
   input.vertical = geo::VerticalNamed(settings.products.vertical);
   input.map_resolution_m = grid.resolution_m;
   input.memory_bytes = settings.run.MemoryLimitBytes();

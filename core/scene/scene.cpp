@@ -113,6 +113,9 @@ Scene::~Scene() = default;
 const SceneInfo& Scene::info() const {
   return impl_->info;
 }
+const Background& Scene::background() const {
+  return impl_->background;
+}
 
 RenderStatistics Scene::statistics() const {
   RenderStatistics statistics = impl_->service != nullptr ? impl_->service->statistics() : impl_->statistics;

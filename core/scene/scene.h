@@ -95,6 +95,7 @@ struct RenderStatistics {
 };
 
 class RayService;
+struct Background;
 struct PointColor;
 struct PointOptions;
 
@@ -112,6 +113,7 @@ class Scene {
   ~Scene();
 
   const SceneInfo& info() const;
+  const Background& background() const;
   RenderStatistics statistics() const;
   // Any number of rays, 0 included; out has the same length. Same bits for any memory, service and number of threads.
   // Throws base::Interrupted when cancelled, base::UsageError when the overlapping blocks of one place do not fit in memory.

@@ -44,11 +44,13 @@ void AddPhoto(const brightness::Response& response, const camera::Camera& cached
       const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(cached_camera.width) + static_cast<size_t>(x);
       if (!pixels.Pixel(photo, pixel, rgb)) continue;
       const std::array<float, 3> log_gain = response.LogGain(photo, radius.Squared({x + 0.5, y + 0.5}));
+      const float log_shading = response.LogShading(photo, {(static_cast<float>(x) + 0.5F) / static_cast<float>(cached_camera.width),
+                                                            (static_cast<float>(y) + 0.5F) / static_cast<float>(cached_camera.height)});
       float shown_before = 0.0F, shown_after = 0.0F;
       for (size_t c = 0; c < 3; ++c) {
         const float display = static_cast<float>(rgb[c]) / 255.0F;
         const float recorded = image::LinearFromSrgb(display);
-        const float at_reference = recorded * std::exp(-log_gain[c]);
+        const float at_reference = recorded * std::exp(-log_gain[c] - log_shading);
         before += static_cast<double>(recorded);
         after += static_cast<double>(at_reference);
         shown_before += display / 3.0F;

@@ -38,8 +38,9 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
   }
   if (options.Shading()) {
     const brightness::ShadingGrid grid = brightness::ShadingGrid::Parse(options.shading_grid).value();
-    plan.response.AddShading(grid);
-    plan.learn.shading = {grid, {}, static_cast<float>(options.shading_sigma * std::numbers::ln2)};
+    const auto sigma = static_cast<float>(options.shading_sigma * std::numbers::ln2);
+    plan.response.AddShading(grid, sigma);
+    plan.learn.shading = {grid, {}, sigma};
     for (const bool trains : in_training) plan.learn.shading.learns.push_back(trains ? 1 : 0);
   }
   // Only photos with usable tags are kept near their EXIF gain.

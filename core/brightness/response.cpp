@@ -15,6 +15,7 @@ constexpr const char* kCamera = "response/camera";
 constexpr const char* kVignetting = "response/vignetting";
 constexpr const char* kNames = "response/names";
 constexpr const char* kShading = "response/shading";
+constexpr const char* kShadingSigma = "shading_sigma";
 
 }  // namespace
 
@@ -52,8 +53,9 @@ float Response::InterpolatedShading(size_t photo, const PicturePlace& place) con
   return sum;
 }
 
-void Response::AddShading(const ShadingGrid& grid) {
+void Response::AddShading(const ShadingGrid& grid, float sigma) {
   shading_grid = grid;
+  shading_sigma = sigma;
   shading.assign(photos() * grid.knots(), 0.0F);
 }
 
@@ -89,7 +91,9 @@ void PutResponse(const Response& response, checkpoint::ArchiveWriter& writer) {
   writer.Put(kCamera, response.camera);
   writer.Put(kVignetting, response.vignetting, {static_cast<int64_t>(response.vignetting.size() / 3), 3});
   writer.Put(kNames, response.names);
-  if (response.shading_grid.On()) writer.Put(kShading, response.shading, {photos, response.shading_grid.rows, response.shading_grid.columns});
+  if (!response.shading_grid.On()) return;
+  writer.Put(kShading, response.shading, {photos, response.shading_grid.rows, response.shading_grid.columns});
+  writer.SetAttribute(kShadingSigma, static_cast<double>(response.shading_sigma));
 }
 
 Response GetResponse(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
@@ -108,6 +112,7 @@ Response GetResponse(const checkpoint::ArchiveReader& reader, const std::filesys
     if (shading_fits) {
       response.shading_grid = {static_cast<int>(shape[2]), static_cast<int>(shape[1])};
       response.shading = reader.Floats(kShading);
+      response.shading_sigma = static_cast<float>(reader.DoubleAttribute(kShadingSigma));
     }
   }
   const auto cameras = static_cast<int64_t>(response.vignetting.size() / 3);

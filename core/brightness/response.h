@@ -27,6 +27,7 @@ struct Response {
   std::vector<uint8_t> names;       // of the photos, one per line, UTF-8; empty when unknown
   ShadingGrid shading_grid;         // the same for all photos; off: no shading
   std::vector<float> shading;       // [photo][row][column], natural logarithm; 0 for held-out photos; empty without shading
+  float shading_sigma = 0.0F;       // prior of the shading (ShadingOptions); 0 without it
 
   // All gains 1, no vignetting, every photo of camera 0.
   static Response Neutral(size_t photos, size_t cameras);
@@ -36,7 +37,7 @@ struct Response {
   // Natural logarithm of the shading of a photo at a place of its picture; 0 without shading.
   float LogShading(size_t photo, const PicturePlace& place) const { return shading.empty() ? 0.0F : InterpolatedShading(photo, place); }
   // Gives all photos a shading of 0.
-  void AddShading(const ShadingGrid& grid);
+  void AddShading(const ShadingGrid& grid, float sigma);
   // Natural logarithm of the product of the first three factors, per colour; on the optical axis by default.
   std::array<float, 3> LogGain(size_t photo, float radius2 = 0.0F) const;
   // Per colour, on the optical axis.

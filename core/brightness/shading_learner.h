@@ -30,6 +30,9 @@ class ShadingLearner {
   // step, or with a gradient that is not finite, are only projected.
   void Step(double progress, Moments& moments);
 
+  // Of the pixels since the last step, [photo][knot], without the prior.
+  const std::vector<double>& gradient() const { return gradient_; }
+
   Moments EmptyMoments() const;
   // Writes the moments under "learner/"; nothing without shading.
   void Put(const Moments& moments, checkpoint::ArchiveWriter& writer) const;

@@ -15,7 +15,7 @@ constexpr int kOctaves = 3;
 constexpr int kPlaces = 100;
 constexpr float kApart = 0.37F;
 // Slope of the pattern per wavelength below which the distance to an edge would be exaggerated.
-constexpr float kLeastSlope = 0.5F;
+constexpr float kLeastSlope = 1.0F;
 
 }  // namespace
 

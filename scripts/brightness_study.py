@@ -60,13 +60,13 @@ class Study:
             self.call("simulate", place, "-o", folder, "--quiet", *settings("simulate", options))
         return folder
 
-    def run(self, name, survey, brightness, *extra):
+    def run(self, name, survey, brightness, *extra, blocks="2x2"):
         """Trains and scores; returns metrics.json."""
         folder = self.out / "run" / name
         if not (folder / "report" / "metrics.json").exists():
             print(f"run {name}", flush=True)
             shutil.rmtree(folder, ignore_errors=True)
-            self.call("run", survey, "-o", folder, "--blocks", "2x2", "--steps", self.args.steps, "--quiet", "--brightness", brightness,
+            self.call("run", survey, "-o", folder, "--blocks", blocks, "--steps", self.args.steps, "--quiet", "--brightness", brightness,
                       "--set", "products.video_seconds=0", "--set", "products.dsm=false", "--set", "products.ortho=false", *extra)
         metrics = json.loads((folder / "report" / "metrics.json").read_text())
         self.results[name] = {key: metrics[key] for key in
@@ -233,8 +233,8 @@ class Study:
                 for which, brightness in corrections.items():
                     name = f"{self.args.place}_{light}_{which}_{seed}"
                     truth = ["--set", f"evaluate.normal_photos={survey / 'truth' / 'cloudless'}"] if light == "clouds" else []
-                    m = self.run(name, survey, brightness, "--seed", seed, "--blocks", "1x1", "--set", "surface.enabled=false", "--set",
-                                 "products.ortho=true", "--set", "products.resolution_m=0.25", *truth)
+                    m = self.run(name, survey, brightness, "--seed", seed, "--set", "surface.enabled=false", "--set", "products.ortho=true",
+                                 "--set", "products.resolution_m=0.25", *truth, blocks="1x1")
                     found[light, which] = m
                     uneven = m["orthophoto"]["light_error_stops"]
                     self.results[name]["light_error_stops"] = uneven

@@ -5,7 +5,8 @@
   scripts/brightness_study.py -o study --study exposure --steps 2000
   scripts/brightness_study.py -o study --skyquilt build/release/skyquilt --quick
 
-Studies: exposure (drift, jumps, wrong tags, no tags), hidden (under- and over-exposed surveys), light (brighter, darker and moved sun).
+Studies: exposure (drift, jumps, wrong tags, no tags), hidden (under- and over-exposed surveys), light (brighter, darker and moved sun), clouds
+(drifting shadows of clouds, several seeds).
 Simulations and finished runs in the output folder are used again, so a stopped study resumes. Writes study_NAME.md, study_NAME.json and images.
 Needs python3-numpy and python3-pil. Every run has the same number of steps, so other work on the machine changes only the time.
 Exit status: 0 done, 1 skyquilt failed, 2 wrong usage or a missing module.
@@ -59,17 +60,18 @@ class Study:
             self.call("simulate", place, "-o", folder, "--quiet", *settings("simulate", options))
         return folder
 
-    def run(self, name, survey, brightness, *extra):
+    def run(self, name, survey, brightness, *extra, blocks="2x2"):
         """Trains and scores; returns metrics.json."""
         folder = self.out / "run" / name
         if not (folder / "report" / "metrics.json").exists():
             print(f"run {name}", flush=True)
             shutil.rmtree(folder, ignore_errors=True)
-            self.call("run", survey, "-o", folder, "--blocks", "2x2", "--steps", self.args.steps, "--quiet", "--brightness", brightness,
+            self.call("run", survey, "-o", folder, "--blocks", blocks, "--steps", self.args.steps, "--quiet", "--brightness", brightness,
                       "--set", "products.video_seconds=0", "--set", "products.dsm=false", "--set", "products.ortho=false", *extra)
         metrics = json.loads((folder / "report" / "metrics.json").read_text())
         self.results[name] = {key: metrics[key] for key in
                               ("psnr", "ssim", "psnr_exif_gain", "psnr_right_half", "psnr_right_half_fitted", "psnr_normal", "ssim_normal",
+                               "psnr_tiles", "psnr_tiles_gains", "psnr_tiles_shading", "psnr_normal_fitted",
                                "samples_per_second", "train_seconds")}
         return metrics
 
@@ -219,13 +221,42 @@ class Study:
         self.panel("light_sun.jpg", [self.out / "sim" / "sun_10" / "images" / photo, day / "images" / photo, self.view("sun_48_exif_gain", photo),
                                      self.view("sun_10_exif_gain", photo)])
 
+    def clouds(self):
+        clear = {**STEADY, "image_width": 360, "ortho_cell_m": 0.25}
+        shadows = {**clear, "cloud_shadows": 1, "cloud_size_m": 80, "cloud_penumbra_m": 25, "cloud_speed_ms": 6, "cloud_cover": 0.45}
+        corrections = {"off": "exif,gain,vignette", "on": "exif,gain,vignette,shading"}
+        rows = []
+        for seed in range(1, self.args.seeds + 1):
+            found = {}
+            for light, options in (("clear", clear), ("clouds", shadows)):
+                survey = self.simulate(f"{self.args.place}_{light}_{seed}", self.args.place, {**options, "seed": seed})
+                for which, brightness in corrections.items():
+                    name = f"{self.args.place}_{light}_{which}_{seed}"
+                    truth = ["--set", f"evaluate.normal_photos={survey / 'truth' / 'cloudless'}"] if light == "clouds" else []
+                    m = self.run(name, survey, brightness, "--seed", seed, "--set", "surface.enabled=false", "--set", "products.ortho=true",
+                                 "--set", "products.resolution_m=0.25", *truth, blocks="1x1")
+                    found[light, which] = m
+                    uneven = m["orthophoto"]["light_error_stops"]
+                    self.results[name]["light_error_stops"] = uneven
+                    normal = m["psnr_normal_fitted"]
+                    rows.append([seed, light, which, f"{m['psnr']:.2f}", f"{m['psnr_tiles_gains']:.2f}", f"{m['psnr_tiles_shading']:.2f}",
+                                 "" if normal is None else f"{normal:.2f}", f"{uneven:.3f}", f"{m['train_seconds']:.0f}"])
+            best, lost, won = (found[key][score] for key, score in ((("clear", "off"), "psnr_tiles_gains"), (("clouds", "off"), "psnr_tiles_gains"),
+                                                                     (("clouds", "on"), "psnr_tiles_shading")))
+            rows[-1].append(f"{100 * (won - lost) / (best - lost):.0f} %")
+        self.title("Moving light")
+        self.table(["seed", "survey", "shading", "held-out PSNR (dB)", "tiles, gains fitted", "tiles, shading fitted", "against cloudless photos",
+                    "orthophoto's uneven light (stops)", "training (s)", "regained"], [row + [""] * (10 - len(row)) for row in rows])
+
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--out", required=True, help="folder for surveys, runs, tables and pictures")
     parser.add_argument("--skyquilt", default=shutil.which("skyquilt") or "build/release/skyquilt", help="the program")
-    parser.add_argument("--study", choices=["exposure", "hidden", "light", "all"], default="all")
+    parser.add_argument("--study", choices=["exposure", "hidden", "light", "clouds", "all"], default="all")
     parser.add_argument("--steps", type=int, default=600, help="training steps of every block; the context has half as many")
+    parser.add_argument("--seeds", type=int, default=3, help="of the study clouds")
+    parser.add_argument("--place", default="hamlet", help="of the study clouds")
     parser.add_argument("--quick", action="store_true", help="only 60 steps: tests that everything runs, results mean nothing")
     args = parser.parse_args()
     if args.quick:
@@ -233,7 +264,7 @@ def main():
     if not os.access(args.skyquilt, os.X_OK):
         sys.exit(f"brightness_study: {args.skyquilt} cannot be run: build it with scripts/demo.sh, or give --skyquilt")
     study = Study(args)
-    for name in ["exposure", "hidden", "light"] if args.study == "all" else [args.study]:
+    for name in ["exposure", "hidden", "light", "clouds"] if args.study == "all" else [args.study]:
         getattr(study, name)()
     text = "\n".join(study.lines).strip() + "\n"
     (study.out / f"study_{args.study}.md").write_text(text)

@@ -367,6 +367,10 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
   }
   place.people = options.people;
   place.city.lamps = options.lamps;
+  if (options.cloud_shadows > 0.0 && place.landscape == Landscape::kRoom) {
+    Refuse("cloud_shadows", std::to_string(options.cloud_shadows), "the flight is in a room, under a roof; set it to 0");
+  }
+  place.cloud_shadows = {options.cloud_shadows, options.cloud_size_m, options.cloud_penumbra_m, options.cloud_speed_ms, options.cloud_cover};
   Overlay(options.sun_azimuth_deg, place.sun_azimuth_deg);
   Overlay(options.sun_elevation_deg, place.sun_elevation_deg);
   CheckControlCrs(options);

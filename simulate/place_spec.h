@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/camera/camera.h"
+#include "simulate/cloud_shadows.h"
 #include "simulate/simulate_options.h"
 #include "simulate/tag_faults.h"
 
@@ -80,6 +81,7 @@ struct PlaceSpec {
   double sun_azimuth_deg = 140.0;
   double sun_elevation_deg = 48.0;
   double ambient_voxel_m = 3.0;
+  CloudShadowSpec cloud_shadows;
   double sky_clouds = 0.0;  // 0..1, contrast of the clouds; photos see them mirrored by wet surfaces
 };
 

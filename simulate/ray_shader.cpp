@@ -86,7 +86,7 @@ RayLight RayShader::Trace(const MovingScene& moving, const PixelWidth& pixel, ra
     } else {
       const Hit& hit = hits[lane];
       const Surface surface = ((on_moving >> lane) & 1U) != 0 ? World::MovingSurfaceAt(hit, moving) : world_.SurfaceAt(hit);
-      light.radiance[lane] = Shade(hit, surface, ((dark >> lane) & 1U) != 0 ? 0.0F : 1.0F);
+      light.radiance[lane] = Shade(hit, surface, ((dark >> lane) & 1U) != 0 ? 0.0F : moving.clouds.SunShare(hit.position));
     }
   }
   return light;

@@ -61,6 +61,15 @@ void PrepareFolder(const fs::path& folder) {
     fs::create_directories(folder / name);
 }
 
+// A test photo at normal exposure, without shadows of clouds.
+void WriteCloudless(const fs::path& folder, const PhotoPlan& photo, const PhotoRenderer& renderer, MovingScene moving, int jpeg_quality,
+                    base::ThreadPool& threads) {
+  moving.clouds = {};
+  fs::create_directories(folder / "truth" / "cloudless");
+  image::SaveJpeg(Develop(renderer.Render(photo.cam_from_enu, moving, threads).rgb_linear, {}), folder / "truth" / "cloudless" / photo.name,
+                  jpeg_quality);
+}
+
 void WarnAboutStreets(const World& world, const PlaceSpec& place) {
   if (world.city() == nullptr) return;
   const std::vector<Car>& parked = world.city()->contents().parked;
@@ -195,7 +204,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   for (size_t i = 0; i < photos.size(); ++i) {
     base::ThrowIfCancelled();
     const PhotoPlan& photo = photos[i];
-    const MovingScene moving = world.MovingAt(photo.time_s);
+    MovingScene moving = world.MovingAt(photo.time_s);
     const Rendering rendering = renderer.Render(photo.cam_from_enu, moving, threads, [&progress](double share) { progress.Advance(share); });
     const image::Image8 pixels = Develop(rendering.rgb_linear, {LightRgb(photo), place.vignetting, place.camera.PrincipalPoint()});
     WritePhoto(folder, photo, pixels, place.camera, frame, options.jpeg_quality);
@@ -208,6 +217,9 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
       ++summary.n_test;
     } else if (options.class_images == "all") {
       WriteClasses(folder, photo, renderer.Surfaces(photo.cam_from_enu, moving, threads));
+    }
+    if (photo.true_depth && options.cloud_shadows > 0.0) {
+      WriteCloudless(folder, photo, renderer, std::move(moving), options.jpeg_quality, threads);
     }
     progress.Update(static_cast<double>(i + 1));
     if (!photo.finds_points) continue;

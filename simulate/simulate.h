@@ -9,6 +9,7 @@
 //   truth/surface.ply                  the static surface as a mesh, ENU metres, with the class of each face (simulate/surface_mesh.h)
 //   truth/orthophoto.tif               the true orthophoto, RGBA in UTM, with simulate.ortho_cell_m (true_orthophoto.h)
 //   truth/edge_targets.json            where slanted edges are, with simulate.edge_targets (edge_targets.h)
+//   truth/cloudless/<name>.jpg         the test photos at normal exposure without shadows of clouds, with simulate.cloud_shadows
 //   truth/masks/<name>.jpg.png         0 on a moving car, a person or their shadows; only for photos that show one
 //   truth/exposure.json                brightness of every photo
 //   truth/buildings.json               position and size of every part of a building, and the outlines that parts have together

@@ -18,7 +18,8 @@ namespace skyquilt::simulate {
 World::World(const PlaceSpec& place, double light_intensity, base::ThreadPool& threads)
     : seed_(HashCell(static_cast<int>(place.seed), 0, 4711U)),
       hillside_rise_(HillsideRise(place.hillside_deg)),
-      sky_(place.sun_azimuth_deg, place.sun_elevation_deg, light_intensity, place.sky_clouds, seed_ + 5U) {
+      sky_(place.sun_azimuth_deg, place.sun_elevation_deg, light_intensity, place.sky_clouds, seed_ + 5U),
+      clouds_(place.cloud_shadows, sky_.sun_direction(), seed_ + 6U) {
   const Eigen::Vector2d surround = Eigen::Vector2d::Constant(place.surround_m);
   if (place.landscape == Landscape::kCity) {
     BuildCity(place, place.area_min - surround, place.area_max + surround);
@@ -211,7 +212,7 @@ MovingScene World::MovingAt(double time_s) const {
     people.push_back(person);
   }
   raytrace::TracedScene scene(mesh.position, mesh.triangle);
-  return {std::move(cars), std::move(people), std::move(mesh), std::move(scene)};
+  return {std::move(cars), std::move(people), std::move(mesh), std::move(scene), clouds_.At(time_s)};
 }
 
 Surface World::GroundAt(const Hit& hit) const {

@@ -11,6 +11,7 @@
 #include "core/raytrace/traced_scene.h"
 #include "simulate/ambient_volume.h"
 #include "simulate/city_layout.h"
+#include "simulate/cloud_shadows.h"
 #include "simulate/place_spec.h"
 #include "simulate/sky.h"
 #include "simulate/surface.h"
@@ -20,12 +21,13 @@
 
 namespace skyquilt::simulate {
 
-// The moving cars and people at one moment.
+// The moving cars, people and shadows of clouds at one moment.
 struct MovingScene {
   std::vector<Car> cars;
   std::vector<Person> people;
   Mesh mesh;
   raytrace::TracedScene scene;
+  CloudShadows clouds = {};
 };
 
 class World {
@@ -78,6 +80,7 @@ class World {
   Mesh mesh_;
   std::unique_ptr<raytrace::TracedScene> scene_;
   Sky sky_;
+  CloudShadows clouds_;
   TargetPaint paint_;
   std::unique_ptr<AmbientVolume> ambient_;
 };

@@ -34,7 +34,12 @@ double ColorRange(const survey::Survey& survey, const brightness::Response& resp
   for (size_t i = 0; i < survey.photos.size(); ++i) {
     if (survey.photos[i].is_test) continue;
     const std::array<float, 3> log = response.LogGain(i);
-    gains.push_back(std::exp(std::min({log[0], log[1], log[2]})));
+    float darkest = std::min({log[0], log[1], log[2]});
+    if (response.shading_grid.On()) {
+      const size_t knots = response.shading_grid.knots();
+      darkest += *std::min_element(response.shading.data() + i * knots, response.shading.data() + (i + 1) * knots);
+    }
+    gains.push_back(std::exp(darkest));
   }
   return brightness::ColorRange(gains);
 }

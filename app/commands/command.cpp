@@ -252,7 +252,7 @@ void AddTrainingFlags(CLI::App& command, const Overrides& overrides) {
   AddOptionFlag(command, overrides, "--movers", "robust.movers",
                 "do not learn from what moved between photos, found by comparing them: off, on or auto");
   AddOptionFlag(command, overrides, "--brightness", "brightness.correction",
-                "correction of exposure differences between photos: none, or any of exif,gain,vignette,luminance");
+                "correction of exposure differences between photos: none, or any of exif,gain,vignette,shading,luminance");
 }
 
 std::vector<std::filesystem::path> ProjectConfig(const coordinator::Project& project) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace skyquilt::coordinator {
 namespace {
@@ -34,6 +35,13 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
     plan.response.reference_exposure = gains.reference_exposure;
     plan.response.exif_gain = std::move(gains.gain);
     known = std::move(gains.known);
+  }
+  if (options.Shading()) {
+    const brightness::ShadingGrid grid = brightness::ShadingGrid::Parse(options.shading_grid).value();
+    const auto sigma = static_cast<float>(options.shading_sigma * std::numbers::ln2);
+    plan.response.AddShading(grid, sigma);
+    plan.learn.shading = {grid, {}, sigma};
+    for (const bool trains : in_training) plan.learn.shading.learns.push_back(trains ? 1 : 0);
   }
   // Only photos with usable tags are kept near their EXIF gain.
   plan.learn.tag_weight.assign(n, 0.0F);

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "core/base/errors.h"
+#include "core/brightness/shading.h"
 
 namespace skyquilt::brightness {
 namespace {
@@ -25,8 +26,12 @@ std::vector<config::Field<BrightnessOptions>> BrightnessOptions::Fields() {
   return {
       {"correction", &O::correction, Range(),
        "brightness corrections, separated by commas: exif (shutter time, aperture and ISO of each photo), gain (the remaining differences, learned "
-       "per photo and colour), vignette (darker corners, learned per camera), luminance (concealing field for under- or over-exposed surveys); or "
-       "none"},
+       "per photo and colour), vignette (darker corners, learned per camera), shading (shadows of clouds, smooth over each photo, learned), "
+       "luminance "
+       "(concealing field for under- or over-exposed surveys); or none"},
+      {"shading_grid", &O::shading_grid, Range(), "knots of the shading along a photo's width and height, each 2 to 32"},
+      {"shading_sigma", &O::shading_sigma, Range{0.01, 3},
+       "by how many stops light typically differs within a photo; shading is kept near 0 and smooth by it"},
       {"luminance_mode", &O::luminance_mode, Range::OneOf({"auto", "under", "over"}),
        "whether luminance treats the survey as under- or over-exposed; auto: decided from the photos' brightness, off for a normally exposed survey"},
       {"target_brightness", &O::target_brightness, Range{0.1, 0.9}, "mean display value of the rendering that luminance brightens or darkens"},
@@ -40,9 +45,13 @@ std::vector<config::Field<BrightnessOptions>> BrightnessOptions::Fields() {
 
 void BrightnessOptions::Check() const {
   config::CheckRanges("brightness", *this);
-  const config::Range known = config::Range::OneOf({"none", "exif", "gain", "vignette", "luminance"});
+  if (!ShadingGrid::Parse(shading_grid)) {
+    throw base::UsageError("brightness.shading_grid = '" + shading_grid +
+                           "' is not allowed: give the knots along width and height, each 2 to 32, such as 8x6");
+  }
+  const config::Range known = config::Range::OneOf({"none", "exif", "gain", "vignette", "shading", "luminance"});
   const std::vector<std::string> names = Listed(correction);
-  if (names.empty()) throw base::UsageError("brightness.correction is empty: give none, or any of exif, gain, vignette, luminance");
+  if (names.empty()) throw base::UsageError("brightness.correction is empty: give none, or any of exif, gain, vignette, shading, luminance");
   for (const std::string& name : names) {
     if (name == "none" && names.size() > 1) {
       throw base::UsageError("brightness.correction = '" + correction +

@@ -10,7 +10,9 @@
 namespace skyquilt::brightness {
 
 struct BrightnessOptions {
-  std::string correction = "exif,gain,vignette";  // list of exif, gain, vignette, luminance, separated by commas; or none
+  std::string correction = "exif,gain,vignette";  // list of exif, gain, vignette, shading, luminance, separated by commas; or none
+  std::string shading_grid = "8x6";               // knots along width and height of a photo, each 2 to 32 (shading.h)
+  double shading_sigma = 0.5;                     // stops, > 0: how much light differs within a photo
   // The rest is for the concealing field (luminance.h), which `correction` turns on by "luminance".
   std::string luminance_mode = "auto";         // under, over, or auto: decided from the photos
   double target_brightness = 0.4;              // mean display value of the rendering shown to people
@@ -25,6 +27,7 @@ struct BrightnessOptions {
   bool Exif() const { return Has("exif"); }
   bool Gain() const { return Has("gain"); }
   bool Vignette() const { return Has("vignette"); }
+  bool Shading() const { return Has("shading"); }
   bool Luminance() const { return Has("luminance"); }
 
  private:

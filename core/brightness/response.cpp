@@ -14,6 +14,8 @@ constexpr const char* kGain = "response/log_gain";
 constexpr const char* kCamera = "response/camera";
 constexpr const char* kVignetting = "response/vignetting";
 constexpr const char* kNames = "response/names";
+constexpr const char* kShading = "response/shading";
+constexpr const char* kShadingSigma = "shading_sigma";
 
 }  // namespace
 
@@ -43,10 +45,24 @@ std::array<Exposure, 3> Response::ExposureOf(size_t photo) const {
   return {Exposure::FromLogGain(log[0]), Exposure::FromLogGain(log[1]), Exposure::FromLogGain(log[2])};
 }
 
-std::array<Exposure, 3> Response::WithVignetting(std::array<Exposure, 3> exposure, float log_vignetting) {
-  if (log_vignetting == 0.0F) return exposure;
-  const Exposure vignetting = Exposure::FromLogGain(log_vignetting);
-  for (Exposure& one : exposure) one = {one.log_gain + log_vignetting, one.gain * vignetting.gain, one.root * vignetting.root};
+float Response::InterpolatedShading(size_t photo, const PicturePlace& place) const {
+  const KnotWeights at = KnotsAt(shading_grid, place);
+  const float* const knots = shading.data() + photo * shading_grid.knots();
+  float sum = 0.0F;
+  for (size_t i = 0; i < at.knot.size(); ++i) sum += at.weight[i] * knots[at.knot[i]];
+  return sum;
+}
+
+void Response::AddShading(const ShadingGrid& grid, float sigma) {
+  shading_grid = grid;
+  shading_sigma = sigma;
+  shading.assign(photos() * grid.knots(), 0.0F);
+}
+
+std::array<Exposure, 3> Response::WithFactor(std::array<Exposure, 3> exposure, float log_factor) {
+  if (log_factor == 0.0F) return exposure;
+  const Exposure factor = Exposure::FromLogGain(log_factor);
+  for (Exposure& one : exposure) one = {one.log_gain + log_factor, one.gain * factor.gain, one.root * factor.root};
   return exposure;
 }
 
@@ -75,6 +91,9 @@ void PutResponse(const Response& response, checkpoint::ArchiveWriter& writer) {
   writer.Put(kCamera, response.camera);
   writer.Put(kVignetting, response.vignetting, {static_cast<int64_t>(response.vignetting.size() / 3), 3});
   writer.Put(kNames, response.names);
+  if (!response.shading_grid.On()) return;
+  writer.Put(kShading, response.shading, {photos, response.shading_grid.rows, response.shading_grid.columns});
+  writer.SetAttribute(kShadingSigma, static_cast<double>(response.shading_sigma));
 }
 
 Response GetResponse(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
@@ -86,8 +105,18 @@ Response GetResponse(const checkpoint::ArchiveReader& reader, const std::filesys
   response.camera = reader.Ints(kCamera);
   response.vignetting = reader.Floats(kVignetting);
   response.names = reader.Bytes(kNames);
+  bool shading_fits = true;
+  if (reader.Has(kShading)) {
+    const std::vector<int64_t> shape = reader.Shape(kShading);
+    shading_fits = shape.size() == 3 && shape[0] == static_cast<int64_t>(response.photos()) && shape[1] >= 2 && shape[2] >= 2;
+    if (shading_fits) {
+      response.shading_grid = {static_cast<int>(shape[2]), static_cast<int>(shape[1])};
+      response.shading = reader.Floats(kShading);
+      response.shading_sigma = static_cast<float>(reader.DoubleAttribute(kShadingSigma));
+    }
+  }
   const auto cameras = static_cast<int64_t>(response.vignetting.size() / 3);
-  const bool fits = response.log_gain.size() == 3 * response.photos() && response.camera.size() == response.photos() &&
+  const bool fits = shading_fits && response.log_gain.size() == 3 * response.photos() && response.camera.size() == response.photos() &&
                     std::all_of(response.camera.begin(), response.camera.end(), [&](int64_t c) { return c >= 0 && c < cameras; });
   if (!fits) throw base::InputError(file, "its arrays response/... have sizes that disagree with each other", "Train it again with --restart");
   return response;

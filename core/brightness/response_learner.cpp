@@ -20,26 +20,30 @@ double RateAt(double progress, double first, double last) {
 
 }  // namespace
 
-ResponseLearner::ResponseLearner(Response& response, const LearnerOptions& options) : response_(response), options_(options) {
+ResponseLearner::ResponseLearner(Response& response, const LearnerOptions& options)
+    : response_(response), options_(options), shading_(response, options.shading) {
   const size_t photos = response.photos();
   SKYQUILT_CHECK(options.learns_gain.size() == photos, "one flag per photo");
   SKYQUILT_CHECK(options.tag_weight.empty() || options.tag_weight.size() == photos, "a tag weight per photo, or none");
   active_ = options.Gains();
   for (auto* moment : {&moments_.first, &moments_.second}) moment->assign(3 * photos, 0.0F);
   moments_.steps.assign(photos, 0);
+  moments_.shading = shading_.EmptyMoments();
   gradient_.assign(3 * photos, 0.0);
   touched_.assign(photos, 0);
   weight_.assign(photos, 0.0);
 }
 
 void ResponseLearner::Add(size_t photo, const float gradient[3], float weight) {
-  if (options_.learns_gain[photo] == 0) return;
+  if (options_.learns_gain[photo] == 0 || frozen_) return;
   touched_[photo] = 1;
   weight_[photo] += static_cast<double>(weight);
   for (size_t c = 0; c < 3; ++c) gradient_[3 * photo + c] += static_cast<double>(gradient[c]);
 }
 
 void ResponseLearner::Step(double progress) {
+  shading_.Step(progress, moments_.shading);
+  if (frozen_) return;
   for (size_t i = 0; i < options_.tag_weight.size(); ++i) {
     const double pull = kSquaredPerLog * static_cast<double>(options_.tag_weight[i]) * weight_[i];
     for (size_t k = 3 * i; k < 3 * i + 3; ++k) gradient_[k] += pull * static_cast<double>(response_.log_gain[k]);
@@ -89,6 +93,7 @@ void ResponseLearner::Put(checkpoint::ArchiveWriter& writer) const {
   writer.Put("learner/gain_moment1", moments_.first);
   writer.Put("learner/gain_moment2", moments_.second);
   writer.Put("learner/gain_steps", moments_.steps);
+  shading_.Put(moments_.shading, writer);
 }
 
 void ResponseLearner::Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file) {
@@ -97,6 +102,7 @@ void ResponseLearner::Get(const checkpoint::ArchiveReader& reader, const std::fi
   take(moments_.first, reader.Floats("learner/gain_moment1"), "learner/gain_moment1");
   take(moments_.second, reader.Floats("learner/gain_moment2"), "learner/gain_moment2");
   take(moments_.steps, reader.Ints("learner/gain_steps"), "learner/gain_steps");
+  shading_.Get(reader, file, moments_.shading);
 }
 
 }  // namespace skyquilt::brightness

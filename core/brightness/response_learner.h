@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/brightness/response.h"
+#include "core/brightness/shading_learner.h"
 #include "core/checkpoint/archive.h"
 
 namespace skyquilt::brightness {
@@ -23,8 +24,9 @@ struct LearnerOptions {
   // the pixels of the photo themselves. At a weight of about 0.01 differences between overlapping photos still win over the prior, but a slow drift
   // over the whole survey, such as light on water, does not. Empty: no prior.
   std::vector<float> tag_weight;
-  bool anchored = false;    // some training photos keep their gains and fix the common factor: the mean is not subtracted
-  bool vignetting = false;  // also solve for the cameras' vignetting, from tie points only
+  bool anchored = false;        // some training photos keep their gains and fix the common factor: the mean is not subtracted
+  bool vignetting = false;      // also solve for the cameras' vignetting, from tie points only
+  ShadingOptions shading = {};  // of the photos, from tie points and then while the field trains
 
   // Whether any photo learns its gain.
   bool Gains() const { return std::find(learns_gain.begin(), learns_gain.end(), uint8_t{1}) != learns_gain.end(); }
@@ -35,19 +37,24 @@ class ResponseLearner {
   // Writes into `response`, which must outlive it.
   ResponseLearner(Response& response, const LearnerOptions& options);
 
-  bool active() const { return active_ && !frozen_; }
+  // Whether gains or shading are learned while the field trains.
+  bool active() const { return LearnsGains() || shading_.On(); }
+  bool LearnsGains() const { return active_ && !frozen_; }
+  // Gradients of shading are added to it.
+  ShadingLearner& shading() { return shading_; }
   // Adds the gradient of one pixel: d loss / d log gain per colour. weight: the pixel's share of the loss, 1 / rays of the batch.
   void Add(size_t photo, const float gradient[3], float weight);
   // One Adam step with the gradients added since the last step. progress: of the training, 0..1, sets the learning rate. Photos whose gradient is not
   // finite keep their gains.
   void Step(double progress);
-  // Freezes the gains: call it when tie points have given better gains than an unfinished field could. From then on active() is false.
+  // Freezes the gains: call it when tie points have given better gains than an unfinished field could. Shading learns on.
   void Freeze() { frozen_ = true; }
 
   // Adam's state.
   struct Moments {
     std::vector<float> first, second;  // [photo][colour]
     std::vector<int64_t> steps;        // number of updates per photo
+    ShadingLearner::Moments shading;
   };
   // Together with the response they are all that a step changes: whoever keeps both can go back to them.
   Moments& moments() { return moments_; }
@@ -63,6 +70,7 @@ class ResponseLearner {
 
   Response& response_;
   LearnerOptions options_;
+  ShadingLearner shading_;
   bool active_ = false, frozen_ = false;
   Moments moments_;
   std::vector<double> gradient_;  // of this step

@@ -68,6 +68,10 @@ struct Metrics {
   double flip_full_frame = kNotMeasured;
   double psnr_right_half = kNotMeasured;
   double psnr_right_half_fitted = kNotMeasured;
+  double psnr_tiles = kNotMeasured;  // PhotoScore::tiles_db and so on
+  double psnr_tiles_gains = kNotMeasured;
+  double psnr_tiles_shading = kNotMeasured;
+  double psnr_normal_fitted = kNotMeasured;
   double lpips = kNotMeasured;
   std::string lpips_note;  // why lpips is null, or which network measured it
   std::vector<photos::PhotoScore> photos;

@@ -42,6 +42,9 @@ Json PhotoJson(const photos::PhotoScore& score, bool has_truth) {
   json["psnr_right_half"] = NumberOrNull(score.right_half_db);
   json["psnr_right_half_fitted"] = NumberOrNull(score.right_half_fitted_db);
   json["fitted_stops"] = score.fitted_stops;
+  json["psnr_tiles"] = NumberOrNull(score.tiles_db);
+  json["psnr_tiles_gains"] = NumberOrNull(score.tiles_gains_db);
+  json["psnr_tiles_shading"] = NumberOrNull(score.tiles_shading_db);
   json["render_seconds"] = NumberOrNull(score.render_seconds);
   if (has_truth) {
     json["depth_rmse_m"] = NumberOrNull(score.depth_rmse_m);

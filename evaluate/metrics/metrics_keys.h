@@ -11,7 +11,7 @@ namespace skyquilt::evaluate::metrics {
 using KeyedNumber = std::pair<const char*, double Metrics::*>;
 
 // Numbers of the whole evaluation.
-inline constexpr std::array<KeyedNumber, 16> kScores = {{{"psnr", &Metrics::psnr},
+inline constexpr std::array<KeyedNumber, 20> kScores = {{{"psnr", &Metrics::psnr},
                                                          {"psnr_1000", &Metrics::psnr_1000},
                                                          {"ssim", &Metrics::ssim},
                                                          {"flip", &Metrics::flip},
@@ -26,6 +26,10 @@ inline constexpr std::array<KeyedNumber, 16> kScores = {{{"psnr", &Metrics::psnr
                                                          {"ssim_normal", &Metrics::ssim_normal},
                                                          {"psnr_right_half", &Metrics::psnr_right_half},
                                                          {"psnr_right_half_fitted", &Metrics::psnr_right_half_fitted},
+                                                         {"psnr_tiles", &Metrics::psnr_tiles},
+                                                         {"psnr_tiles_gains", &Metrics::psnr_tiles_gains},
+                                                         {"psnr_tiles_shading", &Metrics::psnr_tiles_shading},
+                                                         {"psnr_normal_fitted", &Metrics::psnr_normal_fitted},
                                                          {"lpips", &Metrics::lpips}}};
 inline constexpr std::array<KeyedNumber, 4> kSeams = {{{"seam_psnr_gap_db", &Metrics::seam_psnr_gap_db},
                                                        {"psnr_block_interior", &Metrics::psnr_interior_db},

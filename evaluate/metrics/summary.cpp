@@ -24,11 +24,11 @@ constexpr size_t kFewestBytesPerPhoto = 160;  // of its numbers; names may be sh
 template <typename Score, typename Visit>
 void VisitMembers(Score& score, Visit visit) {
   auto& [photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_1000_db, expected_psnr_db,
-         psnr_exif_gain_db, psnr_normal_db, ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db,
-         fitted_stops, depth_rmse_m, depth_median_abs_m, render_seconds] = score;
+         psnr_exif_gain_db, psnr_normal_db, ssim_normal, psnr_normal_fitted_db, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db,
+         right_half_fitted_db, fitted_stops, tiles_db, tiles_gains_db, tiles_shading_db, depth_rmse_m, depth_median_abs_m, render_seconds] = score;
   visit(photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_1000_db, expected_psnr_db,
-        psnr_exif_gain_db, psnr_normal_db, ssim_normal, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db,
-        fitted_stops, depth_rmse_m, depth_median_abs_m, render_seconds);
+        psnr_exif_gain_db, psnr_normal_db, ssim_normal, psnr_normal_fitted_db, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db,
+        right_half_fitted_db, fitted_stops, tiles_db, tiles_gains_db, tiles_shading_db, depth_rmse_m, depth_median_abs_m, render_seconds);
 }
 
 void AddMeans(const Scores& scores, Metrics* metrics) {
@@ -44,6 +44,10 @@ void AddMeans(const Scores& scores, Metrics* metrics) {
   metrics->flip_full_frame = MeanOver(scores.photos, &photos::PhotoScore::flip_full);
   metrics->psnr_right_half = MeanOver(scores.photos, &photos::PhotoScore::right_half_db);
   metrics->psnr_right_half_fitted = MeanOver(scores.photos, &photos::PhotoScore::right_half_fitted_db);
+  metrics->psnr_tiles = MeanOver(scores.photos, &photos::PhotoScore::tiles_db);
+  metrics->psnr_tiles_gains = MeanOver(scores.photos, &photos::PhotoScore::tiles_gains_db);
+  metrics->psnr_tiles_shading = MeanOver(scores.photos, &photos::PhotoScore::tiles_shading_db);
+  metrics->psnr_normal_fitted = MeanOver(scores.photos, &photos::PhotoScore::psnr_normal_fitted_db);
   metrics->lpips = MeanOver(scores.photos, &photos::PhotoScore::lpips);
   metrics->coverage = scores.Coverage();
 }

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "core/base/cancel.h"
+#include "core/base/order_statistics.h"
+#include "core/image/srgb.h"
 #include "core/metrics/ssim.h"
 
 namespace skyquilt::evaluate::ortho {
@@ -50,7 +52,38 @@ struct TileScore {
   double ssim_sum = 0.0;
   int64_t ssim_cells = 0;
   SeamSums seams;
+  std::vector<double> light_stops;  // per square (MapComparison::light_error_stops)
 };
+
+// Of the squares that lie inside a tile.
+std::vector<double> LightOfSquares(const TilePair& pair) {
+  std::vector<double> stops;
+  for (int top = kHalo; top + kLightCells + kHalo <= pair.both.height; top += kLightCells) {
+    for (int left = kHalo; left + kLightCells + kHalo <= pair.both.width; left += kLightCells) {
+      double map = 0.0, truth = 0.0;
+      bool known = true;
+      for (int y = top; y < top + kLightCells && known; ++y) {
+        for (int x = left; x < left + kLightCells && known; ++x) {
+          known = *pair.both.At(x, y) != 0;
+          for (int c = 0; c < 3; ++c) {
+            map += static_cast<double>(image::LinearFromSrgb(pair.map.rgb.At(x, y)[c]));
+            truth += static_cast<double>(image::LinearFromSrgb(pair.truth.rgb.At(x, y)[c]));
+          }
+        }
+      }
+      if (known && map > 0.0 && truth > 0.0) stops.push_back(std::log2(map / truth));
+    }
+  }
+  return stops;
+}
+
+double SpreadAboutMedian(std::vector<double> stops) {
+  if (stops.empty()) return kNotMeasured;
+  const double middle = base::UpperMedian(stops);
+  double squares = 0.0;
+  for (const double value : stops) squares += (value - middle) * (value - middle);
+  return std::sqrt(squares / static_cast<double>(stops.size()));
+}
 
 TileScore ScoreTile(const OpenMaps& maps, const CellArea& tile, const Eigen::Vector2d& shift_m, const HeightMap* heights) {
   TilePair pair = ReadPair(maps, tile, shift_m, kHalo);
@@ -65,6 +98,7 @@ TileScore ScoreTile(const OpenMaps& maps, const CellArea& tile, const Eigen::Vec
     score.ssim_sum += static_cast<double>(value);
     ++score.ssim_cells;
   }
+  score.light_stops = LightOfSquares(pair);
   if (maps.sources) {
     gis::MapGrid grid = maps.map.grid();
     grid.left += (tile.left - kHalo) * grid.resolution_m;
@@ -247,12 +281,15 @@ MapComparison CompareMaps(const std::vector<OpenMaps>& maps, const CellArea& are
     scores[static_cast<size_t>(i)] = ScoreTile(maps[static_cast<size_t>(thread)], tiles[static_cast<size_t>(i)], shift_m, heights);
   });
   MapComparison comparison;
+  std::vector<double> light_stops;
   for (const TileScore& score : scores) {
+    light_stops.insert(light_stops.end(), score.light_stops.begin(), score.light_stops.end());
     comparison.error += score.error;
     comparison.ssim_sum += score.ssim_sum;
     comparison.ssim_cells += score.ssim_cells;
     AddSeams(score.seams, &comparison.seams);
   }
+  comparison.light_error_stops = SpreadAboutMedian(std::move(light_stops));
   comparison.crops = ChooseCrops(maps, tiles, scores, shift_m);
   return comparison;
 }

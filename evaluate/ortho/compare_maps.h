@@ -37,11 +37,16 @@ std::vector<OpenMaps> OpenForThreads(const MapFiles& files, const base::ThreadPo
 // better than no shift.
 Eigen::Vector2d MeasureShift(const std::vector<OpenMaps>& maps, const CellArea& area, base::ThreadPool& threads);
 
+constexpr int kLightCells = 16;
+
 struct MapComparison {
   skyquilt::metrics::SquaredError error;
   double ssim_sum = 0.0;
   int64_t ssim_cells = 0;
   SeamSums seams;
+  // Root mean square over squares of kLightCells cells of log2 of the map's linear light over the truth's, without the median: how unevenly the map
+  // is lit. Squares that both maps know all of; NaN without any.
+  double light_error_stops = kNotMeasured;
   std::vector<OrthoCrop> crops;  // where they differ most, more than nine tenths of the map do, and as usual
 };
 // The same result for any number of threads. heights may be null. Throws base::Interrupted.

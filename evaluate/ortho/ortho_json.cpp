@@ -10,7 +10,7 @@
 namespace skyquilt::evaluate::ortho {
 namespace {
 
-constexpr std::array<std::pair<const char*, double OrthoScores::*>, 14> kOrthoNumbers = {
+constexpr std::array<std::pair<const char*, double OrthoScores::*>, 15> kOrthoNumbers = {
     {{"cell_m", &OrthoScores::cell_m},
      {"share_from_photos", &OrthoScores::share_photos},
      {"share_from_field", &OrthoScores::share_field},
@@ -18,6 +18,7 @@ constexpr std::array<std::pair<const char*, double OrthoScores::*>, 14> kOrthoNu
      {"shift_north_m", &OrthoScores::shift_north_m},
      {"psnr_db", &OrthoScores::psnr_db},
      {"ssim", &OrthoScores::ssim},
+     {"light_error_stops", &OrthoScores::light_error_stops},
      {"mtf50_cycles_per_cell", &OrthoScores::mtf50_per_cell},
      {"mtf50_cycles_per_metre", &OrthoScores::mtf50_per_m},
      {"photo_mtf50_cycles_per_pixel", &OrthoScores::photo_mtf50_per_px},

@@ -96,6 +96,7 @@ void TakeComparison(MapComparison comparison, OrthoResult* result) {
   scores.psnr_db = skyquilt::metrics::PsnrOf(comparison.error);
   scores.cells_compared = comparison.error.n_values / 3;
   if (comparison.ssim_cells > 0) scores.ssim = comparison.ssim_sum / static_cast<double>(comparison.ssim_cells);
+  scores.light_error_stops = comparison.light_error_stops;
   const SeamLevels levels = LevelsOf(comparison.seams);
   if (!comparison.seams.empty()) scores.seams = levels.pairs;
   scores.seam_levels = levels.mean;

@@ -22,6 +22,7 @@ struct OrthoScores {
   double shift_north_m = kNotMeasured;
   double psnr_db = kNotMeasured;             // cells between the outermost training cameras where both maps have data
   double ssim = kNotMeasured;                //
+  double light_error_stops = kNotMeasured;   // of the map's light over squares of some metres: spread about its median (compare_maps.h)
   int64_t cells_compared = 0;                // there
   int64_t edge_targets = 0;                  // on which the sharpness of the map was measured
   double mtf50_per_cell = kNotMeasured;      // cycles per cell, median over them (slanted_edge.h)

@@ -44,11 +44,13 @@ void AddPhoto(const brightness::Response& response, const camera::Camera& cached
       const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(cached_camera.width) + static_cast<size_t>(x);
       if (!pixels.Pixel(photo, pixel, rgb)) continue;
       const std::array<float, 3> log_gain = response.LogGain(photo, radius.Squared({x + 0.5, y + 0.5}));
+      const float log_shading = response.LogShading(photo, {(static_cast<float>(x) + 0.5F) / static_cast<float>(cached_camera.width),
+                                                            (static_cast<float>(y) + 0.5F) / static_cast<float>(cached_camera.height)});
       float shown_before = 0.0F, shown_after = 0.0F;
       for (size_t c = 0; c < 3; ++c) {
         const float display = static_cast<float>(rgb[c]) / 255.0F;
         const float recorded = image::LinearFromSrgb(display);
-        const float at_reference = recorded * std::exp(-log_gain[c]);
+        const float at_reference = recorded * std::exp(-log_gain[c] - log_shading);
         before += static_cast<double>(recorded);
         after += static_cast<double>(at_reference);
         shown_before += display / 3.0F;
@@ -95,6 +97,13 @@ std::vector<VignettingCurve> VignettingOfCameras(const std::vector<float>& vigne
   return curves;
 }
 
+// Rows of columns.
+std::vector<std::vector<float>> ShadingRows(const brightness::ShadingGrid& grid, const std::vector<float>& stops) {
+  std::vector<std::vector<float>> rows;
+  for (auto row = stops.begin(); row != stops.end(); row += grid.columns) rows.emplace_back(row, row + grid.columns);
+  return rows;
+}
+
 std::string LuminanceSentence(const scene::SceneInfo& info) {
   if (!info.luminance.On()) return "";
   const std::string target = FormatFixed(info.luminance.target, 2);
@@ -135,6 +144,8 @@ BrightnessReport CollectBrightness(const scene::SceneInfo& info, const survey::S
     entry.exif_stops = std::log2(static_cast<double>(response.exif_gain[i]));
     for (size_t c = 0; c < 3; ++c) entry.learned_stops[c] = static_cast<double>(response.log_gain[3 * i + c]) / std::numbers::ln2;
     if (photo.is_test) continue;
+    const size_t knots = response.shading_grid.knots();
+    for (size_t k = i * knots; k < (i + 1) * knots; ++k) entry.shading_stops.push_back(response.shading[k] / std::numbers::ln2_v<float>);
     const camera::Camera& camera = survey.cameras[static_cast<size_t>(photo.camera)];
     AddPhoto(response, camera.Resized(pixels.Width(i), pixels.Height(i)), pixels, i, &light);
   }
@@ -144,6 +155,7 @@ BrightnessReport CollectBrightness(const scene::SceneInfo& info, const survey::S
   report.histogram_before = Shares(light.before);
   report.histogram_after = Shares(light.after);
   report.vignetting = VignettingOfCameras(response.vignetting);
+  report.shading_grid = response.shading_grid;
   report.luminance = LuminanceSentence(info);
   return report;
 }
@@ -153,7 +165,8 @@ std::string BrightnessJson(const BrightnessReport& report) {
   Json json;
   json["about"] =
       "light recorded by a photo relative to the survey's reference exposure, in stops: exif_stops + learned_stops (red, green, blue). For held-out "
-      "photos learned_stops are predicted from the photos before and after. vignetting: per camera, factor on light at 0, 0.1 ... 1 of the distance "
+      "photos learned_stops are predicted from the photos before and after. shading_stops: of training photos, with shading: knots of the light "
+      "within the photo, rows from the top. vignetting: per camera, factor on light at 0, 0.1 ... 1 of the distance "
       "from the principal point to the farthest corner";
   json["trust_in_tags"] = base::NumberOrNull(report.trust_in_tags);
   json["spread_before_stops"] = base::NumberOrNull(report.spread_before_stops);
@@ -165,6 +178,7 @@ std::string BrightnessJson(const BrightnessReport& report) {
                               {"held_out", photo.held_out},
                               {"exif_stops", base::NumberOrNull(photo.exif_stops)},
                               {"learned_stops", photo.learned_stops}});
+    if (!photo.shading_stops.empty()) json["photos"].back()["shading_stops"] = ShadingRows(report.shading_grid, photo.shading_stops);
   }
   return base::JsonText(json, 1) + "\n";
 }

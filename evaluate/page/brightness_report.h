@@ -20,6 +20,7 @@ struct BrightnessPhoto {
   bool held_out = false;
   double exif_stops = 0.0;                                // from the tags
   std::array<double, 3> learned_stops = {0.0, 0.0, 0.0};  // added to exif_stops, per colour; predicted for held-out photos
+  std::vector<float> shading_stops;                       // [row][column] of BrightnessReport::shading_grid; empty for held-out photos
 };
 
 // Images of one held-out photo; paths relative to the page.
@@ -47,6 +48,7 @@ struct BrightnessReport {
   BrightnessHistogram histogram_before = {};  // over the training photos, as recorded
   BrightnessHistogram histogram_after = {};   // corrected to reference exposure; the last bin has all pixels brighter than white
   std::vector<VignettingCurve> vignetting;    // per camera; empty when no camera has any
+  brightness::ShadingGrid shading_grid;       // off: none was learned
   std::string luminance;                      // a sentence about the concealing field; empty when there is none
   std::vector<BrightnessView> views;          // darkest first
 

@@ -220,6 +220,55 @@ std::string ViewCard(const BrightnessView& view) {
   return html + "</div></article>\n";
 }
 
+constexpr size_t kShadingPictures = 36;
+constexpr double kFullStops = 1.0;  // of shading, in full colour
+
+std::string ShadingColor(double stops) {
+  const double part = std::clamp(std::abs(stops) / kFullStops, 0.0, 1.0);
+  const std::array<double, 3> full = stops < 0.0 ? std::array<double, 3>{24.0, 60.0, 130.0} : std::array<double, 3>{250.0, 160.0, 20.0};
+  const auto mixed = [&](size_t c) { return static_cast<int>(std::lround(235.0 + part * (full[c] - 235.0))); };
+  return fmt::format("rgb({},{},{})", mixed(0), mixed(1), mixed(2));
+}
+
+// A small picture of what was learned of one photo: as many squares as knots.
+std::string ShadingPicture(const BrightnessPhoto& photo, const brightness::ShadingGrid& grid) {
+  const auto [low, high] = std::minmax_element(photo.shading_stops.begin(), photo.shading_stops.end());
+  std::string html =
+      fmt::format("<svg width=\"104\" viewBox=\"0 0 {} {}\" role=\"img\"><title>{}: {} to {}</title>", grid.columns, grid.rows,
+                  EscapeHtml(photo.name), SignedFixed(static_cast<double>(*low), 2), SignedFixed(static_cast<double>(*high), 2, "stops"));
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const auto stops = static_cast<double>(photo.shading_stops[static_cast<size_t>(row * grid.columns + column)]);
+      html += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"1.02\" height=\"1.02\" fill=\"{}\"/>", column, row, ShadingColor(stops));
+    }
+  }
+  return html + "</svg>\n";
+}
+
+// The photos with most shading, in order of capture.
+std::string ShadingPictures(const BrightnessReport& brightness) {
+  if (!brightness.shading_grid.On()) return "";
+  std::vector<std::pair<float, size_t>> strongest;
+  for (size_t i = 0; i < brightness.photos.size(); ++i) {
+    const std::vector<float>& stops = brightness.photos[i].shading_stops;
+    if (stops.empty()) continue;
+    const auto [low, high] = std::minmax_element(stops.begin(), stops.end());
+    strongest.emplace_back(*low - *high, i);
+  }
+  std::sort(strongest.begin(), strongest.end());
+  strongest.resize(std::min(strongest.size(), kShadingPictures));
+  std::sort(strongest.begin(), strongest.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::string html =
+      "<h3>Light within the photos</h3><p>Training also learned how light differs within each photo, as where a cloud throws its shadow. " +
+      fmt::format(
+          "The {} photos with the largest differences, in the order in which they were taken: blue is darker than the photo's "
+          "mean, orange brighter, full colour a stop or more. The scene and all that is made from it are without them.</p>",
+          strongest.size()) +
+      "<div class=\"shadings\" style=\"display:flex;flex-wrap:wrap;gap:6px\">";
+  for (const auto& [range, photo] : strongest) html += ShadingPicture(brightness.photos[photo], brightness.shading_grid);
+  return html + "</div>";
+}
+
 }  // namespace
 
 std::string BrightnessSection(const ReportInput& input) {
@@ -238,7 +287,7 @@ std::string BrightnessSection(const ReportInput& input) {
   std::string html = SectionBegin("brightness", "Brightness", Chips(chips)) + Lead(lead) + "<div class=\"chart-grid\">" + GainChart(brightness) +
                      HistogramChart(brightness, brightness.vignetting.empty());
   if (!brightness.vignetting.empty()) html += VignettingChart(brightness);
-  html += "</div>";
+  html += "</div>" + ShadingPictures(brightness);
   if (!brightness.views.empty()) {
     html += "<div class=\"views\">";
     for (const BrightnessView& view : brightness.views) html += ViewCard(view);

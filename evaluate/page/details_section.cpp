@@ -40,6 +40,13 @@ void AddPictureRows(const metrics::Metrics& metrics, FigureTable* table) {
     table->Row("PSNR of right halves, with gains fitted to the left halves", Db(metrics.psnr_right_half_fitted),
                "The same, if the brightness of each photo were known.");
   }
+  if (!std::isnan(metrics.psnr_tiles_shading)) {
+    table->Row("PSNR of alternate tiles, as rendered", Db(metrics.psnr_tiles), "Over the covered pixels of every second tile of 16 pixels.");
+    table->Row("PSNR of alternate tiles, with gains fitted to the others", Db(metrics.psnr_tiles_gains),
+               "The same with the brightness of each photo fitted to the tiles between them.");
+    table->Row("PSNR of alternate tiles, with shading fitted to the others", Db(metrics.psnr_tiles_shading),
+               "The same with brightness and shading (shadows of clouds) fitted. Where this is much higher, light moved over the photos.");
+  }
   if (!std::isnan(metrics.psnr_normal)) {
     table->Row("PSNR at normal brightness", Db(metrics.psnr_normal), "Against the normally exposed photos in evaluate.normal_photos.");
     table->Row("SSIM at normal brightness", FormatFixed(metrics.ssim_normal, 3), "The same with structural similarity.");

@@ -29,6 +29,8 @@ std::string OrthoFigures(const ortho::OrthoScores& scores) {
   }
   row("PSNR", scores.psnr_db, 2, "dB", "How close the colours are; higher is better.");
   row("SSIM", scores.ssim, 3, "", "How alike structure and contrast are; 1 is the same.");
+  row("Uneven light", scores.light_error_stops, 3, "stops",
+      "How much the light of the map differs from the truth's from place to place, as where it shows shadows of clouds.");
   row("Shift to the east", 100.0 * scores.shift_east_m, 1, "cm", "Error of the geo-reference. The map is moved back by it before it is compared.");
   row("Shift to the north", 100.0 * scores.shift_north_m, 1, "cm", "The same to the north.");
   row("MTF50", scores.mtf50_per_cell, 3, "cycles per cell", "Sharpness: how fine stripes may be until half of their contrast is lost.");

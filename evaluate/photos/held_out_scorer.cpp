@@ -20,6 +20,7 @@ SceneArea AreaOf(const scene::SceneInfo& info, const survey::Survey& survey) {
   for (const scene::SceneBlock& block : info.blocks) area.boxes.push_back({block.min_enu, block.max_enu, block.margin_m});
   if (area.boxes.empty()) area.boxes.push_back({info.min_enu, info.max_enu, 0.0});
   area.heights = {info.min_enu.z(), info.max_enu.z()};
+  area.shading = FittedShading::Of(info.response);
   if (survey::LooksLevel(survey)) area.points = survey.points;
   return area;
 }
@@ -132,6 +133,7 @@ ScoredPhoto HeldOutScorer::Score(int photo, bool keep_normal, base::ThreadPool& 
     const NormalScore against = ScoreNormal(normal_photos / score.name, scored.normal, scored.findings.scored);
     score.psnr_normal_db = against.psnr_db;
     score.ssim_normal = against.ssim;
+    score.psnr_normal_fitted_db = against.psnr_fitted_db;
   }
   return scored;
 }

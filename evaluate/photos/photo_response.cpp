@@ -6,6 +6,7 @@
 #include "core/base/errors.h"
 #include "core/metrics/psnr.h"
 #include "core/metrics/ssim.h"
+#include "evaluate/photos/tile_fit.h"
 
 namespace skyquilt::evaluate::photos {
 namespace {
@@ -61,7 +62,8 @@ NormalScore ScoreNormal(const std::filesystem::path& true_photo, std::span<const
     truth = image::Resize(truth, scored.width, height);
   }
   const image::ImageF render = AsImage(normal, scored.width, scored.height), photo = image::ToImageF(truth);
-  return {skyquilt::metrics::Psnr(render, photo, &scored), skyquilt::metrics::Ssim(render, photo, &scored)};
+  const TileScores tiles = ScoreAlternateTiles(render, photo, scored, {2, 2}, 1.0);
+  return {skyquilt::metrics::Psnr(render, photo, &scored), skyquilt::metrics::Ssim(render, photo, &scored), skyquilt::metrics::PsnrOf(tiles.gains)};
 }
 
 }  // namespace skyquilt::evaluate::photos

@@ -26,6 +26,7 @@ double PsnrWithResponse(const HeldOutPhoto& task, const PhotoResponse& recording
 struct NormalScore {
   double psnr_db = kNotMeasured;
   double ssim = kNotMeasured;
+  double psnr_fitted_db = kNotMeasured;  // on the tiles that are not fitted, with gains per colour fitted on the others (alternate_tiles.h)
 };
 // Compares a rendering at normal brightness with a photo taken at normal brightness. Throws base::InputError for a photo that cannot be used.
 NormalScore ScoreNormal(const std::filesystem::path& true_photo, std::span<const render::RayColor> normal, const image::Image8& scored);

@@ -28,6 +28,7 @@ struct PhotoScore {
   double psnr_exif_gain_db = kNotMeasured;                  // over the covered pixels, with exposure_gain alone
   double psnr_normal_db = kNotMeasured;  // at normal brightness against a normally exposed photo (evaluate.normal_photos), covered pixels
   double ssim_normal = kNotMeasured;
+  double psnr_normal_fitted_db = kNotMeasured;  // the same on the tiles that are not fitted, with gains per colour fitted on the others
   double ssim = kNotMeasured;
   double flip = kNotMeasured;
   double psnr_full_db = kNotMeasured;  // over all pixels that are not masked
@@ -37,7 +38,12 @@ struct PhotoScore {
   double right_half_db = kNotMeasured;                   // PSNR over the covered pixels of the right half,
   double right_half_fitted_db = kNotMeasured;            // and with gains per colour fitted to the left half
   std::array<double, 3> fitted_stops = {0.0, 0.0, 0.0};  // those gains, on top of exposure_gain
-  double depth_rmse_m = kNotMeasured;                    // simulated surveys only: z-depth error over covered pixels with both depths
+  // Over the covered pixels of the tiles that are not fitted (alternate_tiles.h): as rendered, with gains per colour fitted on the other tiles, and
+  // with shading fitted there too (tile_fit.h).
+  double tiles_db = kNotMeasured;
+  double tiles_gains_db = kNotMeasured;
+  double tiles_shading_db = kNotMeasured;
+  double depth_rmse_m = kNotMeasured;  // simulated surveys only: z-depth error over covered pixels with both depths
   double depth_median_abs_m = kNotMeasured;
   double render_seconds = 0.0;
 

@@ -14,6 +14,7 @@
 #include "core/scene/depth_normals.h"
 #include "evaluate/photos/apply_response.h"
 #include "evaluate/photos/skyline.h"
+#include "evaluate/photos/tile_fit.h"
 
 namespace skyquilt::evaluate::photos {
 
@@ -156,19 +157,25 @@ double PsnrAtCommonWidth(const image::Image8& photo, const image::ImageF& render
 }
 
 // Scores that are not sums over pixels. FLIP spreads its rows over the threads, the others are computed side by side.
-void AddWholeFrameScores(const HeldOutPhoto& task, const FrameComparison& frame, base::ThreadPool& threads, PhotoScore* score) {
+void AddWholeFrameScores(const HeldOutPhoto& task, const FrameComparison& frame, const FittedShading& shading, base::ThreadPool& threads,
+                         PhotoScore* score) {
   const image::Image8 used = task.UsedPixels();
   const image::Image8* unmasked = used.Empty() ? nullptr : &used;
   HalfScores halves;
-  threads.ParallelFor(3, [&](int64_t which, int) {
+  TileScores tiles;
+  threads.ParallelFor(4, [&](int64_t which, int) {
     if (which == 0) score->ssim = skyquilt::metrics::Ssim(frame.render, frame.photo, &frame.scored);
     if (which == 1) score->ssim_full = skyquilt::metrics::Ssim(frame.render, frame.photo, unmasked);
     if (which == 2) halves = ScoreHalves(frame.unclamped, frame.photo, frame.scored);
+    if (which == 3) tiles = ScoreAlternateTiles(frame.unclamped, frame.photo, frame.scored, shading.grid, static_cast<double>(shading.sigma));
   });
   score->flip = skyquilt::metrics::Flip(frame.render, frame.photo, &frame.scored, threads);
   score->flip_full = skyquilt::metrics::Flip(frame.render, frame.photo, unmasked, threads);
   score->right_half_db = skyquilt::metrics::PsnrOf(halves.right);
   score->right_half_fitted_db = skyquilt::metrics::PsnrOf(halves.right_fitted);
+  score->tiles_db = skyquilt::metrics::PsnrOf(tiles.rendered);
+  score->tiles_gains_db = skyquilt::metrics::PsnrOf(tiles.gains);
+  score->tiles_shading_db = skyquilt::metrics::PsnrOf(tiles.shaded);
   for (size_t c = 0; c < 3; ++c) score->fitted_stops[c] = static_cast<double>(halves.log_gain[c]) / std::numbers::ln2;
 }
 
@@ -205,7 +212,7 @@ PhotoResult ScorePhoto(const HeldOutPhoto& task, std::span<const render::RayColo
   score.psnr_db = skyquilt::metrics::PsnrOf(sums.covered);
   score.psnr_full_db = skyquilt::metrics::PsnrOf(sums.full);
   score.psnr_1000_db = PsnrAtCommonWidth(task.photo, frame.render, frame.scored);
-  AddWholeFrameScores(task, frame, threads, &score);
+  AddWholeFrameScores(task, frame, area.shading, threads, &score);
   findings.scored = std::move(frame.scored);
   findings.z_depth = std::move(frame.z_depth);
   findings.render = image::ToImage8(frame.render);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "core/brightness/response.h"
 #include "core/camera/camera.h"
 #include "core/geo/block_box.h"
 #include "core/geo/transform.h"
@@ -32,12 +33,24 @@ struct HeldOutPhoto {
   image::Image8 UsedPixels() const;  // the mask as an image of one channel; empty: every pixel counts
 };
 
+// The shading that is fitted to held-out photos (tile_fit.h).
+struct FittedShading {
+  brightness::ShadingGrid grid = {8, 6};
+  float sigma = 0.35F;
+
+  // As the scene was trained with; the above where it has none.
+  static FittedShading Of(const brightness::Response& response) {
+    return response.shading_grid.On() ? FittedShading{response.shading_grid, response.shading_sigma} : FittedShading();
+  }
+};
+
 struct SceneArea {
   std::vector<geo::BlockBox> boxes;  // of the blocks
   HeightRange heights;               // of the whole scene
   // Of the survey: rays above them that meet nothing below the highest of the heights show the sky, which is not covered. Empty where photos look
   // down.
   std::span<const survey::SparsePoint> points = {};
+  FittedShading shading = {};
 };
 
 struct PhotoResult {

@@ -42,7 +42,9 @@ class PhotoComparison {
     for (const size_t pixel : of_photo) {
       photo_.push_back(photo);
       pixel_.push_back(pixel);
-      radius2_.push_back(radius.Squared({static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5}));
+      const Eigen::Vector2d position(static_cast<double>(pixel % width) + 0.5, static_cast<double>(pixel / width) + 0.5);
+      radius2_.push_back(radius.Squared(position));
+      place_.push_back({static_cast<float>(position.x() / camera.width), static_cast<float>(position.y() / camera.height)});
     }
   }
 
@@ -64,7 +66,7 @@ class PhotoComparison {
     float shown[3];
     std::copy_n(colors_[i].rgb_srgb, 3, shown);
     const brightness::Response& response = scene_.info().response;
-    if (photo_[i] < response.photos()) brightness::Expose(response.ExposureOf(photo_[i], radius2_[i]), shown);
+    if (photo_[i] < response.photos()) brightness::Expose(response.ExposureOf(photo_[i], radius2_[i], place_[i]), shown);
     float sum = 0.0F;
     for (size_t c = 0; c < 3; ++c) {
       const float value = std::isfinite(shown[c]) ? std::clamp(shown[c], 0.0F, 1.0F) : 0.0F;
@@ -79,6 +81,7 @@ class PhotoComparison {
     photo_.clear();
     pixel_.clear();
     radius2_.clear();
+    place_.clear();
   }
 
  private:
@@ -94,6 +97,7 @@ class PhotoComparison {
   std::vector<render::RayColor> colors_;
   std::vector<size_t> photo_, pixel_;
   std::vector<float> radius2_;
+  std::vector<brightness::PicturePlace> place_;
 };
 
 std::vector<size_t> TrainingPhotos(const survey::Survey& survey) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/thread_pool.h"
+#include "core/brightness/unshade.h"
 #include "core/gis/map_projection.h"
 #include "core/survey/photo_pictures.h"
 #include "core/survey/survey.h"
@@ -28,6 +29,7 @@ struct PhotoMapInput {
   double ground_z = 0.0;                   // ENU, of most of the ground
   double flown_height_m = 0.0;             // of most photos, above the ground
   size_t picture_bytes = size_t{1} << 30;  // of photos kept in memory
+  brightness::PhotoShading shading = {};   // is taken out of the photos
 };
 
 // A part of a map or of a surface, in cells.

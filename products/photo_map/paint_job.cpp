@@ -82,6 +82,9 @@ void WritePaintJob(const PhotoMapInput& input, const geo::Geodetic& origin, cons
   bytes.Add(std::vector<char>(input.usable.begin(), input.usable.end()));
   bytes.Add(input.ground_z);
   bytes.Add(input.flown_height_m);
+  bytes.Add(input.shading.grid.columns);
+  bytes.Add(input.shading.grid.rows);
+  bytes.Add(input.shading.log_shading);
   bytes.Add(map.light().gain);
   bytes.Add(map.light().falloff);
   bytes.Add(map.nodes().columns);
@@ -121,6 +124,9 @@ PaintJob::PaintJob(survey::Survey survey, const fs::path& file, size_t picture_b
                       .picture_bytes = picture_bytes};
   bytes.Take(&input.ground_z);
   bytes.Take(&input.flown_height_m);
+  bytes.Take(&input.shading.grid.columns);
+  bytes.Take(&input.shading.grid.rows);
+  bytes.Take(&input.shading.log_shading);
   PhotoLight light;
   bytes.Take(&light.gain);
   bytes.Take(&light.falloff);

@@ -50,6 +50,10 @@ std::string PaintKey(const PhotoMapInput& input) {
   bytes.Add(HashOf(input.field_rgba));
   bytes.Add(HashOf(input.usable));
   bytes.Add(input.ground_z);
+  if (input.shading.grid.On()) {
+    bytes.Add(input.shading.grid.columns);
+    bytes.Add(HashOf(std::span<const float>(input.shading.log_shading)));
+  }
   for (const camera::Camera& camera : input.survey.cameras) {
     bytes.Add(camera.width);
     bytes.Add(camera.height);

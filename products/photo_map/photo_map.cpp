@@ -18,12 +18,14 @@ constexpr double kPixelsPerCell = 1.6;  // along an axis: photos that are finer 
 
 // Photos reduced to about pixels_per_cell pixels per cell of cell_m metres on the ground.
 survey::PhotoPictures PicturesFor(const PhotoMapInput& input, double cell_m, double pixels_per_cell) {
-  const auto read = [&survey = input.survey, ground_z = input.ground_z, cell_m, pixels_per_cell](size_t photo) {
+  const auto read = [&survey = input.survey, shading = input.shading, ground_z = input.ground_z, cell_m, pixels_per_cell](size_t photo) {
     const survey::Photo& source = survey.photos[photo];
     const camera::Camera& camera = survey.cameras[static_cast<size_t>(source.camera)];
     const double gsd_m = camera::GroundSamplingDistance(camera, std::max(source.cam_from_enu.OriginInSource().z() - ground_z, 1e-6));
     const double width = std::ceil(pixels_per_cell * camera.width * gsd_m / cell_m);
-    return survey::ReadPhotoPicture(survey, photo, static_cast<int>(std::min<double>(camera.width, width)));
+    survey::PhotoPicture picture = survey::ReadPhotoPicture(survey, photo, static_cast<int>(std::min<double>(camera.width, width)));
+    brightness::DivideByShading(shading, photo, picture.rgb);
+    return picture;
   };
   return {input.survey.photos.size(), read, input.picture_bytes};
 }

@@ -231,7 +231,8 @@ std::optional<PhotoOrthophoto> WritePhotoOrthophoto(const scene::SceneInfo& info
                             .field_rgba = field.rgba,
                             .ground_z = ground_z,
                             .flown_height_m = FlownHeight(survey, ground_z),
-                            .picture_bytes = photos.memory};
+                            .picture_bytes = photos.memory,
+                            .shading = brightness::PhotoShading::Of(info.response)};
   PhotoMap map(input, threads);
   survey::WarnOfUnreadPhotos("the orthophoto", map.failures(), n_usable);
   made.unreadable = static_cast<int>(map.failures().size());

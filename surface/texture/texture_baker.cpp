@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/brightness/unshade.h"
 #include "surface/texture/bake_tile.h"
 #include "surface/texture/view_choice.h"
 
@@ -63,7 +64,12 @@ survey::PhotoPictures* TextureBaker::PhotosFor(double texel_m) {
   if (photos_ && photo_texel_m_ == texel_m) return photos_.get();
   failures_ = Failures();
   photo_texel_m_ = texel_m;
-  const auto read = [&input = input_, scale = input_.info->gsd_m / texel_m](size_t photo) { return PictureAt(input, photo, scale); };
+  const auto read = [&input = input_, scale = input_.info->gsd_m / texel_m,
+                     shading = brightness::PhotoShading::Of(input_.info->response)](size_t photo) {
+    survey::PhotoPicture picture = PictureAt(input, photo, scale);
+    brightness::DivideByShading(shading, photo, picture.rgb);
+    return picture;
+  };
   const double budget = std::min(kMostPictureBytes, kShareForPictures * input_.memory_bytes);
   photos_ = std::make_unique<survey::PhotoPictures>(input_.survey->photos.size(), read, static_cast<size_t>(budget));
   return photos_.get();

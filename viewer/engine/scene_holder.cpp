@@ -258,7 +258,9 @@ void SceneHolder::RenderAsPhoto(int photo, std::span<const render::Ray> rays, st
   const camera::CornerRadius radius(camera);
   for (size_t i = 0; i < rays.size(); ++i) {
     const auto pixel = camera.ImgFromCam(taken.cam_from_enu.rotation * rays[i].direction_enu);
-    brightness::Expose(response.ExposureOf(*index, pixel ? std::min(1.0F, radius.Squared(*pixel)) : 0.0F), out[i].rgb_srgb);
+    const Eigen::Vector2d at = pixel.value_or(camera.PrincipalPoint());
+    const brightness::PicturePlace place = {static_cast<float>(at.x() / camera.width), static_cast<float>(at.y() / camera.height)};
+    brightness::Expose(response.ExposureOf(*index, pixel ? std::min(1.0F, radius.Squared(*pixel)) : 0.0F, place), out[i].rgb_srgb);
   }
 }
 

@@ -60,7 +60,7 @@ void RaySource::FindSkyPixels(int photo, const std::vector<Eigen::Vector3f>& srg
   std::vector<Eigen::Vector3f> recorded = srgb;
   for (size_t i = 0; i < recorded.size(); ++i) {
     const Tile tile{photo, static_cast<int16_t>(i % kTileColumns), static_cast<int16_t>(i / kTileColumns)};
-    const std::array<brightness::Exposure, 3> exposure = response_.ExposureOf(index, Radius2(photo, TileCentre(tile)));
+    const std::array<brightness::Exposure, 3> exposure = ExposureAt(photo, TileCentre(tile));
     for (size_t c = 0; c < 3; ++c) {
       float& value = recorded[i][static_cast<Eigen::Index>(c)];
       value = image::SrgbFromLinear(image::LinearFromSrgb(value) * exposure[c].gain);
@@ -123,6 +123,15 @@ void RaySource::RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vecto
   const geo::Rigid3d& pose = enu_from_cam_[i];
   *origin_enu = pose.translation;
   *direction_enu = (pose.rotation * lenses_[pitch_of_[i]].RayFromImg(pixel)).normalized();
+}
+
+brightness::PicturePlace RaySource::PlaceOf(int photo, const Eigen::Vector2d& pixel) const {
+  const auto i = static_cast<size_t>(photo);
+  return {static_cast<float>(pixel.x() / pixels_.Width(i)), static_cast<float>(pixel.y() / pixels_.Height(i))};
+}
+
+std::array<brightness::Exposure, 3> RaySource::ExposureAt(int photo, const Eigen::Vector2d& pixel) const {
+  return response_.ExposureOf(static_cast<size_t>(photo), Radius2(photo, pixel), PlaceOf(photo, pixel));
 }
 
 Eigen::Vector2d RaySource::TileCentre(const Tile& tile) const {
@@ -230,7 +239,9 @@ bool RaySource::RayOf(int photo, int x, int y, int level, bool empty, PixelRay* 
   ray->pixel_pitch = static_cast<float>(size * pitches_[pitch_of_[index]].At(position));
   ray->level = level;
   ray->photo = photo;
-  ray->exposure = brightness::Response::WithVignetting(exposures_[index], response_.LogVignetting(index, Radius2(photo, position)));
+  ray->place = PlaceOf(photo, position);
+  ray->exposure = brightness::Response::WithFactor(
+      exposures_[index], response_.LogVignetting(index, Radius2(photo, position)) + response_.LogShading(index, ray->place));
   // A square of pixels by its corners.
   ray->empty =
       empty || (ShowsSky(photo, x, y) &&
@@ -262,9 +273,9 @@ std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
     for (size_t i = 0; i < values.size(); ++i) values[i] = image::LinearFromSrgb(static_cast<float>(i) / 255.0F);
     return values;
   }();
-  // Where there is no vignetting, a photo has 256 values for each colour.
+  // Where there is neither vignetting nor shading, a photo has 256 values for each colour.
   const float* vignetting = response_.vignetting.data() + 3 * static_cast<size_t>(response_.camera[index]);
-  const bool is_even = std::all_of(vignetting, vignetting + 3, [](float term) { return term == 0.0F; });
+  const bool is_even = response_.shading.empty() && std::all_of(vignetting, vignetting + 3, [](float term) { return term == 0.0F; });
   std::array<std::array<float, 256>, 3> of_value;
   const std::array<brightness::Exposure, 3> on_axis = response_.ExposureOf(index);
   for (size_t c = 0; is_even && c < 3; ++c) {
@@ -275,7 +286,7 @@ std::vector<Eigen::Vector3f> RaySource::TileColors(int photo) const {
   for (int row = 0; row < kTileRows; ++row) {
     for (int column = 0; column < kTileColumns; ++column) {
       const Tile tile{photo, static_cast<int16_t>(column), static_cast<int16_t>(row)};
-      const std::array<brightness::Exposure, 3> exposure = response_.ExposureOf(index, Radius2(photo, TileCentre(tile)));
+      const std::array<brightness::Exposure, 3> exposure = ExposureAt(photo, TileCentre(tile));
       const float gain[3] = {exposure[0].gain, exposure[1].gain, exposure[2].gain};
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       float n = 0.0F;

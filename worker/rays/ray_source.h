@@ -30,6 +30,7 @@ struct PixelRay {
   float target_srgb[3] = {0, 0, 0};              // recorded display value, 0..1
   std::array<brightness::Exposure, 3> exposure;  // recorded light divided by light at reference exposure, per colour
   int photo = 0;
+  brightness::PicturePlace place = {0.0F, 0.0F};        // of its pixel in the photo
   bool empty = false;                                   // the surface is behind the field, or it is the sky: the field must be transparent there
   float point_distance_m = 0.0F, point_sigma_m = 0.0F;  // of a sparse point at its pixel, along the ray; sigma 0: none
 };
@@ -100,6 +101,10 @@ class RaySource {
   std::vector<Eigen::Vector3f> TileColors(int photo) const;
   // As camera::CornerRadius::Squared, in the cached image.
   float Radius2(int photo, const Eigen::Vector2d& pixel) const { return corner_radii_[static_cast<size_t>(photo)].Squared(pixel); }
+  // Place of a position in the cached image, for shading.
+  brightness::PicturePlace PlaceOf(int photo, const Eigen::Vector2d& pixel) const;
+  // With which a photo recorded a position of its cached image.
+  std::array<brightness::Exposure, 3> ExposureAt(int photo, const Eigen::Vector2d& pixel) const;
   // Pixel position of a tile's centre.
   Eigen::Vector2d TileCentre(const Tile& tile) const;
 

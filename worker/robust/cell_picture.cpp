@@ -57,7 +57,7 @@ CellPicture MakeCellPicture(const RaySource& source, const image::PixelCache& pi
       }
       if (masked) continue;
       const Eigen::Vector2d middle(0.5 * (column * cell_px + end_x), 0.5 * (row * cell_px + end_y));
-      const std::array<brightness::Exposure, 3> exposure = response.ExposureOf(index, source.Radius2(photo, middle));
+      const std::array<brightness::Exposure, 3> exposure = response.ExposureOf(index, source.Radius2(photo, middle), source.PlaceOf(photo, middle));
       cell.usable = 1;
       for (size_t c = 0; c < 3; ++c) {
         const float mean = sum[c] / static_cast<float>(n);

@@ -8,17 +8,22 @@
 #include "core/image/srgb.h"
 #include "core/linear/linear.h"
 #include "core/survey/view_kind.h"
+#include "worker/start/tie_point_shading.h"
 
 namespace skyquilt::worker {
 namespace {
 
 // Points that are looked at: enough for every photo to have some hundred sightings, of which those of neighbours tie it to the others.
 constexpr size_t kFewestPoints = 12'000, kPointsOfPhoto = 12;
+constexpr size_t kPointsOfShadedPhoto = 60;  // shading needs some in every part of a photo
 constexpr int kPointReach = 1;               // pixels on each side of a point's pixel that are averaged
 constexpr int kFewestSightings = 8;          // points per photo: with fewer its gain is not estimated
 constexpr int kRounds = 6;                   // of reweighting
+constexpr int kShadedRounds = 12;            // the same with shading: gains and shading are solved in turns
 constexpr int kMostSteps = 200;              // of conjugate gradients
 constexpr double kScatter = 0.15;            // residual in log light at which the weight of a sighting is halved
+// With shading it begins this many times as large and shrinks by this factor every round: else the edge of a shadow would count as an outlier.
+constexpr double kFirstScatter = 6.0, kScatterShrinks = 0.7;
 constexpr double kVignettingExplains = 0.1;  // share of the squared residuals that vignetting must explain
 constexpr double kNearlyAll = 0.95;          // share of the photos
 constexpr double kVignettingRidge = 1.0;     // damping of vignetting, as a number of sightings
@@ -28,6 +33,7 @@ constexpr double kTrace = 1e-3;              // damping of gains, as a number of
 struct Sighting {
   int point = 0, photo = 0;
   float radius2 = 0.0F;
+  brightness::PicturePlace place = {0.0F, 0.0F};
   std::array<double, 3> log_light{};
 };
 
@@ -86,7 +92,8 @@ class ViewCone {
 
 std::vector<Sighting> FindSightings(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                                     const brightness::Response& response, base::ThreadPool& threads) {
-  const size_t wanted = std::max(kFewestPoints, kPointsOfPhoto * survey.photos.size());
+  const size_t of_photo = response.shading_grid.On() ? kPointsOfShadedPhoto : kPointsOfPhoto;
+  const size_t wanted = std::max(kFewestPoints, of_photo * survey.photos.size());
   const size_t stride = std::max<size_t>(1, survey.points.size() / wanted);
   // From above, a photo sees nearly all points in its frame. Looking level, it sees many walls from behind: there only what it observed counts.
   const bool observed_only = !survey.tracks.Empty() && survey::LooksLevel(survey);
@@ -104,7 +111,11 @@ std::vector<Sighting> FindSightings(const survey::Survey& survey, const image::P
       std::array<double, 3> light{};
       if (!position || !(position->x() >= 0.0 && position->y() >= 0.0 && position->x() < camera.width && position->y() < camera.height)) continue;
       if (!LightAround(pixels, photo, *position, &light)) continue;
-      Sighting sighting{static_cast<int>(i / stride), static_cast<int>(photo), source.Radius2(static_cast<int>(photo), *position), {}};
+      Sighting sighting{static_cast<int>(i / stride),
+                        static_cast<int>(photo),
+                        source.Radius2(static_cast<int>(photo), *position),
+                        source.PlaceOf(static_cast<int>(photo), *position),
+                        {}};
       const double known = std::log(static_cast<double>(response.exif_gain[photo]));
       for (size_t c = 0; c < 3; ++c) sighting.log_light[c] = std::log(light[c]) - known;
       per_photo[photo].push_back(sighting);
@@ -206,6 +217,23 @@ void SolveVignetting(std::span<const Sighting> sightings, const std::array<std::
   }
 }
 
+// For shading: what gains and vignetting leave, in the mean of the colours.
+std::vector<ShadedSighting> WithoutOtherFactors(std::span<const Sighting> sightings, const std::array<std::vector<double>, 3>& weight,
+                                                const std::array<Eigen::VectorXd, 3>& gains, const brightness::Response& response) {
+  std::vector<ShadedSighting> shaded;
+  shaded.reserve(sightings.size());
+  for (size_t s = 0; s < sightings.size(); ++s) {
+    const Sighting& sighting = sightings[s];
+    ShadedSighting& one = shaded.emplace_back(ShadedSighting{sighting.point, sighting.photo, sighting.place});
+    for (size_t c = 0; c < 3; ++c) {
+      one.log_light += (sighting.log_light[c] - gains[c][sighting.photo]) / 3.0;
+      one.weight += weight[c][s] / 3.0;
+    }
+    one.log_light -= static_cast<double>(response.LogVignetting(static_cast<size_t>(sighting.photo), sighting.radius2));
+  }
+  return shaded;
+}
+
 // Stores the gains of photos with enough points, and subtracts their mean when no photo anchors it.
 bool KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sighting> sightings, const brightness::LearnerOptions& learn,
                brightness::Response& response) {
@@ -239,7 +267,7 @@ bool KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sigh
 
 bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
                         const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads) {
-  if (!learn.Gains() && !learn.vignetting) return false;
+  if (!learn.Gains() && !learn.vignetting && !learn.shading.On()) return false;
   const std::vector<Sighting> sightings = FindSightings(survey, pixels, source, response, threads);
   const auto n = static_cast<Eigen::Index>(survey.photos.size());
   std::array<Eigen::VectorXd, 3> gains;
@@ -250,10 +278,18 @@ bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
     weight[c].assign(sightings.size(), 1.0);
   }
   std::vector<Sighting> flat = sightings;  // without vignetting
-  for (int round = 0; round < kRounds; ++round) {
+  std::vector<Sighting> unshaded = sightings;
+  const bool shades = learn.shading.On();
+  double scatter = shades ? kFirstScatter * kScatter : kScatter;
+  for (int round = 0; round < (shades ? kShadedRounds : kRounds); ++round) {
     for (size_t s = 0; s < flat.size(); ++s) {
-      const auto vignetting = static_cast<double>(response.LogVignetting(static_cast<size_t>(flat[s].photo), flat[s].radius2));
-      for (size_t c = 0; c < 3; ++c) flat[s].log_light[c] = sightings[s].log_light[c] - vignetting;
+      const auto photo = static_cast<size_t>(flat[s].photo);
+      const auto vignetting = static_cast<double>(response.LogVignetting(photo, flat[s].radius2));
+      const auto shading = static_cast<double>(response.LogShading(photo, flat[s].place));
+      for (size_t c = 0; c < 3; ++c) {
+        unshaded[s].log_light[c] = sightings[s].log_light[c] - shading;
+        flat[s].log_light[c] = unshaded[s].log_light[c] - vignetting;
+      }
     }
     threads.ParallelFor(3, [&](int64_t colour, int) {
       const auto c = static_cast<size_t>(colour);
@@ -262,12 +298,14 @@ bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
       // Cauchy weights of the residuals from each point's mean.
       ForEachPoint(flat, weight[c], light, [&](size_t first, size_t last, double mean) {
         for (size_t s = first; s < last; ++s) {
-          const double off = (light(s) - mean) / kScatter;
+          const double off = (light(s) - mean) / scatter;
           weight[c][s] = 1.0 / (1.0 + off * off);
         }
       });
     });
-    if (learn.vignetting) SolveVignetting(sightings, weight, gains, response);
+    if (learn.vignetting) SolveVignetting(unshaded, weight, gains, response);
+    if (shades) SolveShading(WithoutOtherFactors(sightings, weight, gains, response), learn.shading, response);
+    scatter = std::max(kScatter, kScatterShrinks * scatter);
   }
   return KeepGains(gains, sightings, learn, response);
 }

@@ -2,7 +2,8 @@
 // that hardly overlap. The pixels at each point are read from every training photo that shows it, and
 //   log recorded light = log light of the point + log gain of the photo + log vignetting of its camera at the pixel
 // is solved for all unknowns by robust weighted least squares (Brown and Lowe 2007, section 6, in the logarithm); robust, because points are hidden
-// in some photos. Photos that look level have many points behind walls: of these only the points that a photo observed are read.
+// in some photos. With shading, log shading of the photo at the pixel is another term (tie_point_shading.h). Photos that look level have many points
+// behind walls: of these only the points that a photo observed are read.
 #pragma once
 
 #include "core/brightness/response.h"
@@ -13,7 +14,8 @@
 
 namespace skyquilt::worker {
 
-// Sets response.log_gain of the photos that learn their gain (learn.learns_gain), and response.vignetting when learn.vignetting is true. The other
+// Sets response.log_gain of the photos that learn their gain (learn.learns_gain), response.vignetting when learn.vignetting is true, and
+// response.shading with learn.shading. The other
 // photos keep their gains and fix the common factor; when learn.anchored is false, the mean log gain is zero. Photos with fewer than 8 usable points
 // keep their gains. Returns true when at least 95 % of the photos that learn have enough points, so that training need not learn gains.
 bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,

@@ -119,9 +119,13 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   }
   ClipNetworkGradient(state, result);
   UpdateRunningMeans(sums);
+  const bool shades = learner != nullptr && learner->shading().On();
   for (size_t k = 0; k < gain_gradients_.size(); ++k) {
     const PixelRay& ray = batch.rays[k].ray;
-    if (!ray.empty) learner->Add(static_cast<size_t>(ray.photo), gain_gradients_[k].data(), ray_share);
+    if (ray.empty) continue;
+    const std::array<float, 3>& gradient = gain_gradients_[k];
+    learner->Add(static_cast<size_t>(ray.photo), gradient.data(), ray_share);
+    if (shades) learner->shading().Add(static_cast<size_t>(ray.photo), ray.place, gradient[0] + gradient[1] + gradient[2], ray_share);
   }
   if (codes != nullptr) TrainCodes(batch, options.learning_rate, *codes);
   times_.Add(0, Phase::kBackward, at);

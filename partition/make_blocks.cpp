@@ -277,10 +277,12 @@ BlockGrid GridOf(const BlockSet& set) {
   return grid;
 }
 
-// Cells of about the size of those there are, as far as `low` and `high`; what is less than `least` beyond them is left to their margins. Returns how
-// many cells are before the first one now.
-int Extend(double low, double high, double least, std::vector<double>& edges) {
-  const double cell = (edges.back() - edges.front()) / static_cast<double>(edges.size() - 1);
+// Cells of about the size of those there are, as far as `low` and `high`. A strip that is narrower than the margin or a quarter of a cell would cost
+// as much training as a whole block for the rim of the survey: it is left to the margin and the context. Returns how many cells are before the first
+// one now.
+int Extend(double low, double high, double margin_m, std::vector<double>& edges) {
+  constexpr double kStrip = 0.25;
+  const double cell = (edges.back() - edges.front()) / static_cast<double>(edges.size() - 1), least = std::max(margin_m, kStrip * cell);
   const auto cells = [&](double more) { return more > least ? std::max(1, static_cast<int>(std::lround(std::min(more / cell, 1e6)))) : 0; };
   const double first = edges.front(), last = edges.back();
   const int before = cells(first - low), after = cells(high - last);
@@ -342,9 +344,10 @@ BlockSet ExtendBlocks(const survey::Survey& survey, const BlockSet& earlier, con
   const int columns_before = Extend(in.area.min_enu.x(), in.area.max_enu.x(), *in.margin_m, grid.x_edges);
   const int rows_before = Extend(in.area.min_enu.y(), in.area.max_enu.y(), *in.margin_m, grid.y_edges);
   if (static_cast<int64_t>(grid.rows()) * grid.columns() > kMaxBlocks) {
-    throw base::UsageError(fmt::format("the added photos are too far from the others: {} x {} blocks of the present size would be more than {}. Give "
-                                       "them a project of their own, or --restart for larger blocks",
-                                       grid.rows(), grid.columns(), kMaxBlocks));
+    throw base::UsageError(
+        fmt::format("the added photos are too far from the others: {} x {} blocks of the present size would be more than {}. Give "
+                    "them a project of their own, or --restart for larger blocks",
+                    grid.rows(), grid.columns(), kMaxBlocks));
   }
   int first_row = 0, first_column = 0;
   std::sscanf(earlier.blocks.front().name.c_str(), "r%dc%d", &first_row, &first_column);

@@ -1,5 +1,5 @@
-// Adds photos to a prepared survey. What it has stays as it is to the last bit: frame, poses, lenses, points, held-out photos. Added photos come behind
-// the others with cameras of their own, and bring their points.
+// Adds photos to a prepared survey. What it has stays as it is to the last bit: frame, poses, lenses, points, held-out photos. Added photos come
+// behind the others with cameras of their own, and bring their points.
 #pragma once
 
 #include <filesystem>

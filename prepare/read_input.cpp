@@ -10,8 +10,9 @@ namespace skyquilt::prepare {
 
 std::vector<input::InputFile> ListFiles(const PrepareInput& input, const PrepareOptions& options, const input::InputFolder& folders,
                                         base::ThreadPool& threads) {
-  const input::ListOptions list{
-      .skip = {input.out_folder, std::filesystem::absolute(input.out_folder).parent_path()}, .masks = folders.masks.given, .patterns = options.photos};
+  const input::ListOptions list{.skip = {input.out_folder, std::filesystem::absolute(input.out_folder).parent_path()},
+                                .masks = folders.masks.given,
+                                .patterns = options.photos};
   std::vector<input::InputFile> files = input::ListInput(folders.photo_root, list, threads);
   input::WriteInputTable(files, input.out_folder / kInputTable);
   base::LogInfo(input::SummaryText(files, input.out_folder / kInputTable));

@@ -96,7 +96,8 @@ void AddRun(CLI::App& app, CommandState& state) {
       "  mpirun -n 3 skyquilt run photos/ -o out --time-budget 1h30m\n"
       "Run the same command again to continue after an interruption; finished stages are skipped.\n"
       "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 a block failed (the rest is saved), 130 interrupted (resumable).");
-  command->callback([&state, flags, overrides] { state.run_command = [&state, flags, overrides] { (flags->add ? RunAdding : Run)(state, *flags, *overrides); }; });
+  command->callback(
+      [&state, flags, overrides] { state.run_command = [&state, flags, overrides] { (flags->add ? RunAdding : Run)(state, *flags, *overrides); }; });
 }
 
 }  // namespace skyquilt::app

@@ -24,6 +24,13 @@ void KeepEarlier(const brightness::Response& earlier, const survey::Survey& surv
       float& gain = plan.response.exif_gain[i];
       gain = static_cast<float>(std::clamp(static_cast<double>(gain) * factor, 1.0 / limit, limit));
     }
+  } else if (plan.response.reference_exposure > 0.0) {
+    // Earlier photos had no tags: nothing relates those of the added ones to them.
+    for (size_t i = n; i < survey.photos.size(); ++i) {
+      plan.response.exif_gain[i] = 1.0F;
+      plan.learn.tag_weight[i] = 0.0F;
+      plan.learn.learns_gain[i] = survey.photos[i].is_test ? 0 : 1;
+    }
   }
   plan.response.reference_exposure = earlier.reference_exposure;
   std::copy(earlier.exif_gain.begin(), earlier.exif_gain.end(), plan.response.exif_gain.begin());

@@ -20,8 +20,8 @@ struct BrightnessPlan {
 };
 
 // Photos without exposure tags learn their gains even when the correction is "exif" alone: nothing else could align them.
-// `earlier`: of the photos that the survey had before others were added behind them; they keep it, and the added ones are fitted to them, so that what
-// was trained before goes on looking like what is trained now. Null: none.
+// `earlier`: of the photos that the survey had before others were added behind them; they keep it, and the added ones are fitted to them, so that
+// what was trained before goes on looking like what is trained now. Null: none.
 BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::BrightnessOptions& options,
                               const brightness::Response* earlier = nullptr);
 

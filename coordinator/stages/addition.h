@@ -1,5 +1,5 @@
-// Photos that are added to a finished project. What it was before is kept in .state/before: "prepare" adds photos to that survey, "partition" blocks to
-// those blocks, and "train" trains the blocks for which something has changed. It stays until photos are added again, so that all of that can be
+// Photos that are added to a finished project. What it was before is kept in .state/before: "prepare" adds photos to that survey, "partition" blocks
+// to those blocks, and "train" trains the blocks for which something has changed. It stays until photos are added again, so that all of that can be
 // killed at any moment, and repeated.
 #pragma once
 
@@ -22,8 +22,8 @@ bool FollowsAddition(const Project& project, const std::string& stage);
 prepare::EarlierSurvey EarlierSurveyOf(const Project& project);
 // Deletes what "train" has made, except for the blocks that keep it.
 void RemoveChangedFields(const Project& project);
-// The folder of all photos: those of the project, and the given folders. Throws base::UsageError when the project has no survey, or one of videos, and
-// what LinkZones throws.
+// The folder of all photos: those of the project, and the given folders. Throws base::UsageError when the project has no survey, or one of videos,
+// and what LinkZones throws.
 std::filesystem::path FolderWithAdded(const Project& project, const std::vector<std::filesystem::path>& folders);
 
 }  // namespace skyquilt::coordinator

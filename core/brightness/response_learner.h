@@ -23,8 +23,8 @@ struct LearnerOptions {
   // the pixels of the photo themselves. At a weight of about 0.01 differences between overlapping photos still win over the prior, but a slow drift
   // over the whole survey, such as light on water, does not. Empty: no prior.
   std::vector<float> tag_weight;
-  bool anchored = false;    // some training photos keep their gains and fix the common factor: the mean is not subtracted
-  bool vignetting = false;  // also solve for the cameras' vignetting, from tie points only
+  bool anchored = false;       // some training photos keep their gains and fix the common factor: the mean is not subtracted
+  bool vignetting = false;     // also solve for the cameras' vignetting, from tie points only
   size_t held_vignetting = 0;  // of so many first cameras it is known and stays
 
   // Whether any photo learns its gain.

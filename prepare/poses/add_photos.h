@@ -1,6 +1,6 @@
-// Poses of photos that are added to a finished survey, whose own poses and lenses stay as they are. The added photos and those around them get a model
-// of their own, as any survey; it is laid on the survey by the photos that both have, or by tags where it has none in common with it; then the added
-// photos are adjusted to all matches, while those of the survey are held.
+// Poses of photos that are added to a finished survey, whose own poses and lenses stay as they are. The added photos and those around them get a
+// model of their own, as any survey; it is laid on the survey by the photos that both have, or by tags where it has none in common with it; then the
+// added photos are adjusted to all matches, while those of the survey are held.
 #pragma once
 
 #include <map>

@@ -1,7 +1,11 @@
 #include "partition/make_blocks.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <optional>
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
@@ -30,9 +34,13 @@ struct Inputs {
   SurveyArea area;
   std::vector<PhotoAltitude> altitudes;  // of the training photos
   std::vector<SeenPoint> seen;
+  // Of a grid that goes on from an earlier one: its margin, and what its first row and column are called.
+  std::optional<double> margin_m = {};
+  int first_row = 0, first_column = 0;
 };
 
-double MarginOf(const BlockGrid& grid) {
+double MarginOf(const Inputs& in, const BlockGrid& grid) {
+  if (in.margin_m) return *in.margin_m;
   const double side = (grid.Max(0, 0) - grid.Min(0, 0)).minCoeff();
   return std::min(std::max(kMarginFraction * side, kMinMargin_m), 0.25 * side);
 }
@@ -51,7 +59,7 @@ double FlownGsd(const Inputs& in, double flown_agl_m, double seen_gsd_m) {
 }
 
 double VoxelsOf(const Inputs& in, const BlockGrid& grid, int index, double voxel_m) {
-  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(MarginOf(grid));
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(MarginOf(in, grid));
   return SurfaceVoxels(in.area, in.points, grid.Min(index) - margin, grid.Max(index) + margin, voxel_m);
 }
 
@@ -67,8 +75,8 @@ void CheckAltitudeCount(const PartitionOptions& options, int rows, int columns) 
 Block MakeBlock(const Inputs& in, const BlockGrid& grid, int index, double seen_gsd_m) {
   Block block;
   block.id = index;
-  block.name = "r" + std::to_string(index / grid.columns()) + "c" + std::to_string(index % grid.columns());
-  block.margin_m = MarginOf(grid);
+  block.name = fmt::format("r{}c{}", in.first_row + index / grid.columns(), in.first_column + index % grid.columns());
+  block.margin_m = MarginOf(in, grid);
   block.flown_agl_m = BlockAltitude(in.altitudes, grid.Min(index), grid.Max(index));
   block.altitude_agl_m = block.flown_agl_m;
   block.gsd_m = FlownGsd(in, block.flown_agl_m, seen_gsd_m);
@@ -225,23 +233,21 @@ std::string ConfigHash(const Inputs& in, const BlockGrid& grid) {
   return base::HashHex(bytes);
 }
 
-}  // namespace
+void RequireWidth(int image_width) {
+  if (image_width >= 0) return;
+  throw base::UsageError("image width = " + std::to_string(image_width) + " is not allowed: it must be positive, or 0 for full size");
+}
 
-BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& options, int image_width, double block_steps) {
-  options.Check();
-  if (image_width < 0)
-    throw base::UsageError("image width = " + std::to_string(image_width) + " is not allowed: it must be positive, or 0 for full size");
-  const BlockRequest request = ParseBlockRequest(options.blocks);
-  if (request.kind == BlockRequestKind::kCount) CheckAltitudeCount(options, request.rows, request.columns);
-
+Inputs InputsOf(const survey::Survey& survey, const PartitionOptions& options, int image_width) {
   Inputs in{survey, options, image_width, ReliablePoints(survey), {}, {}, {}};
   in.area = FindSurveyArea(survey, in.points, options.area, options.min_views);
   in.altitudes = TrainingAltitudes(survey, 0.5 * (in.area.min_enu + in.area.max_enu), in.area.ground_m);
   in.seen = SeenPoints(survey, image_width);
-  AutoGrid chosen = MakeGrid(in, request, block_steps);
-  const BlockGrid& grid = chosen.grid;
-  CheckAltitudeCount(options, grid.rows(), grid.columns());
+  return in;
+}
 
+BlockSet SetOf(const Inputs& in, const BlockGrid& grid, std::vector<Block> blocks) {
+  const survey::Survey& survey = in.survey;
   BlockSet set;
   set.origin = survey.origin;
   set.georeferenced = survey.georeferenced;
@@ -249,16 +255,109 @@ BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& option
   set.height_reference = survey.height_reference;
   set.rows = grid.rows();
   set.columns = grid.columns();
-  set.image_width = image_width;
+  set.image_width = in.image_width;
   set.config_hash = ConfigHash(in, grid);
-  set.blocks = BlocksOf(in, grid);
-  set.number_reason = std::move(chosen.reason);
-  set.area_is_that_of_points = in.area.by_points && options.area == "covered";
+  set.blocks = std::move(blocks);
+  set.area_is_that_of_points = in.area.by_points && in.options.area == "covered";
   if (std::all_of(set.blocks.begin(), set.blocks.end(), [](const Block& block) { return block.empty; })) {
     throw base::InputError(survey.photo_root.empty() ? "survey" : survey.photo_root,
                            "every block is empty (" + set.blocks.front().name + ": " + set.blocks.front().empty_reason + ")",
                            "Check the poses and the sparse points of the survey, or hold out fewer photos");
   }
+  return set;
+}
+
+BlockGrid GridOf(const BlockSet& set) {
+  BlockGrid grid;
+  const auto columns = static_cast<size_t>(set.columns), rows = static_cast<size_t>(set.rows);
+  for (size_t c = 0; c < columns; ++c) grid.x_edges.push_back(set.blocks[c].min_enu.x());
+  grid.x_edges.push_back(set.blocks[columns - 1].max_enu.x());
+  for (size_t r = 0; r < rows; ++r) grid.y_edges.push_back(set.blocks[r * columns].min_enu.y());
+  grid.y_edges.push_back(set.blocks[(rows - 1) * columns].max_enu.y());
+  return grid;
+}
+
+// Cells of about the size of those there are, as far as `low` and `high`. A strip that is narrower than the margin or a quarter of a cell would cost
+// as much training as a whole block for the rim of the survey: it is left to the margin and the context. Returns how many cells are before the first
+// one now.
+int Extend(double low, double high, double margin_m, std::vector<double>& edges) {
+  constexpr double kStrip = 0.25;
+  const double cell = (edges.back() - edges.front()) / static_cast<double>(edges.size() - 1), least = std::max(margin_m, kStrip * cell);
+  const auto cells = [&](double more) { return more > least ? std::max(1, static_cast<int>(std::lround(std::min(more / cell, 1e6)))) : 0; };
+  const double first = edges.front(), last = edges.back();
+  const int before = cells(first - low), after = cells(high - last);
+  std::vector<double> all;
+  for (int i = 0; i < before; ++i) all.push_back(low + (first - low) * i / before);
+  all.insert(all.end(), edges.begin(), edges.end());
+  for (int i = 1; i <= after; ++i) all.push_back(i == after ? high : last + (high - last) * i / after);
+  edges = std::move(all);
+  return before;
+}
+
+// Blocks that other photos see now are new ones in the same place. The others stay what they were.
+void KeepUnchanged(const Inputs& in, const BlockSet& earlier, int rows_before, int columns_before, int columns, std::vector<Block>& blocks) {
+  std::vector<Box> boxes;
+  for (const Block& block : earlier.blocks) boxes.push_back({block.TrainMin(), block.TrainMax()});
+  const std::vector<BoxVisibility> views = FindVisibility(in.survey, boxes, in.image_width);
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    const int row = rows_before + static_cast<int>(i) / earlier.columns, column = columns_before + static_cast<int>(i) % earlier.columns;
+    Block& block = blocks[static_cast<size_t>(row) * static_cast<size_t>(columns) + static_cast<size_t>(column)];
+    const Block& before = earlier.blocks[i];
+    const bool same = before.empty ? block.empty : views[i].photos == before.photos;
+    if (!same) {
+      block.name = before.name;
+      continue;
+    }
+    const double cost = block.cost;
+    const int id = block.id;
+    block = before;
+    block.id = id;
+    if (!block.empty && cost > 0.0) block.cost = cost;
+  }
+}
+
+}  // namespace
+
+BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& options, int image_width, double block_steps) {
+  options.Check();
+  RequireWidth(image_width);
+  const BlockRequest request = ParseBlockRequest(options.blocks);
+  if (request.kind == BlockRequestKind::kCount) CheckAltitudeCount(options, request.rows, request.columns);
+
+  const Inputs in = InputsOf(survey, options, image_width);
+  AutoGrid chosen = MakeGrid(in, request, block_steps);
+  CheckAltitudeCount(options, chosen.grid.rows(), chosen.grid.columns());
+  BlockSet set = SetOf(in, chosen.grid, BlocksOf(in, chosen.grid));
+  set.number_reason = std::move(chosen.reason);
+  return set;
+}
+
+BlockSet ExtendBlocks(const survey::Survey& survey, const BlockSet& earlier, const PartitionOptions& options) {
+  options.Check();
+  SKYQUILT_CHECK(!earlier.blocks.empty(), "a set has blocks");
+  if (!options.altitudes.empty()) {
+    throw base::UsageError("photos cannot be added to blocks of given heights (partition.altitudes): it is not known which height new blocks have");
+  }
+  Inputs in = InputsOf(survey, options, earlier.image_width);
+  in.margin_m = earlier.blocks.front().margin_m;
+  BlockGrid grid = GridOf(earlier);
+  const int columns_before = Extend(in.area.min_enu.x(), in.area.max_enu.x(), *in.margin_m, grid.x_edges);
+  const int rows_before = Extend(in.area.min_enu.y(), in.area.max_enu.y(), *in.margin_m, grid.y_edges);
+  if (static_cast<int64_t>(grid.rows()) * grid.columns() > kMaxBlocks) {
+    throw base::UsageError(
+        fmt::format("the added photos are too far from the others: {} x {} blocks of the present size would be more than {}. Give "
+                    "them a project of their own, or --restart for larger blocks",
+                    grid.rows(), grid.columns(), kMaxBlocks));
+  }
+  int first_row = 0, first_column = 0;
+  std::sscanf(earlier.blocks.front().name.c_str(), "r%dc%d", &first_row, &first_column);
+  in.first_row = first_row - rows_before;
+  in.first_column = first_column - columns_before;
+  std::vector<Block> blocks = BlocksOf(in, grid);
+  KeepUnchanged(in, earlier, rows_before, columns_before, grid.columns(), blocks);
+  ScaleCosts(blocks);
+  BlockSet set = SetOf(in, grid, std::move(blocks));
+  set.number_reason = fmt::format("{} x {} of them as before, others of their size around them", earlier.rows, earlier.columns);
   return set;
 }
 

@@ -19,4 +19,11 @@ namespace skyquilt::partition {
 BlockSet MakeBlocks(const survey::Survey& survey, const PartitionOptions& options, int image_width,
                     double block_steps = std::numeric_limits<double>::infinity());
 
+// Blocks of a survey to which photos were added behind the others: those of `earlier`, which keep box, name and margin, and others of about their
+// size around them, as far as the area reaches now but for strips of a quarter of their size. Rows and columns before the first one have negative
+// numbers (r-1c0). A block whose box is seen by the same photos as before is the same to the last bit, but for its cost and id; others get height,
+// table size and photos anew. Throws as MakeBlocks, and base::UsageError for given altitudes and for photos so far away that there would be more than
+// kMaxBlocks.
+BlockSet ExtendBlocks(const survey::Survey& survey, const BlockSet& earlier, const PartitionOptions& options);
+
 }  // namespace skyquilt::partition

@@ -35,13 +35,13 @@
 #include "prepare/input/match_sizes.h"
 #include "prepare/input/photo_files.h"
 #include "prepare/input/plain_photos.h"
-#include "prepare/input/shots.h"
 #include "prepare/model_use.h"
 #include "prepare/models/read_model.h"
 #include "prepare/poses/colmap_run.h"
 #include "prepare/poses/shot_poses.h"
 #include "prepare/poses/triangulate_points.h"
 #include "prepare/prepare_report.h"
+#include "prepare/read_input.h"
 #include "prepare/rigs/cut_panoramas.h"
 #include "prepare/rigs/rig_config.h"
 #include "prepare/survey_points.h"
@@ -52,42 +52,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kInputTable = "input.csv";
-
 // Index into the survey's photos by COLMAP's image id.
 std::unordered_map<uint32_t, int32_t> PhotoOfImage(const std::vector<input::PreparedPhoto>& photos, const survey::ColmapModel& model) {
   std::unordered_map<uint32_t, int32_t> photo_of_image;
   for (size_t i = 0; i < photos.size(); ++i) photo_of_image.emplace(model.images[photos[i].image].id, static_cast<int32_t>(i));
   return photo_of_image;
-}
-
-// All files of the photo folder, with a table of them even where too few can be used.
-std::vector<input::InputFile> ListFiles(const PrepareInput& input, const PrepareOptions& options, const input::InputFolder& folders,
-                                        base::ThreadPool& threads) {
-  const input::ListOptions list{
-      .skip = {input.out_folder, fs::absolute(input.out_folder).parent_path()}, .masks = folders.masks.given, .patterns = options.photos};
-  std::vector<input::InputFile> files = input::ListInput(folders.photo_root, list, threads);
-  input::WriteInputTable(files, input.out_folder / kInputTable);
-  base::LogInfo(input::SummaryText(files, input.out_folder / kInputTable));
-  for (const std::string& warning : input::InputWarnings(folders.photo_root, files)) base::LogWarning(warning);
-  return files;
-}
-
-// What reading the photos told: those that are damaged, and those of one shot.
-void NoteReadPhotos(const input::PhotoSet& photos, std::vector<input::InputFile>& files) {
-  const std::vector<size_t> shots = input::FindShots(photos.usable);
-  const size_t n_shots = input::CountShots(shots);
-  if (n_shots < photos.usable.size()) {
-    base::LogInfo("{} photos are of {} shots, as exposure brackets; prepare.photos can choose one exposure of each by their names",
-                  photos.usable.size(), n_shots);
-  }
-  std::unordered_map<std::string, input::InputFile*> by_name;
-  for (input::InputFile& file : files) by_name.emplace(file.name, &file);
-  for (const std::string& name : photos.unreadable) {
-    by_name.at(name)->kind = input::FileKind::kDamaged;
-    by_name.at(name)->reason = "cannot be used: the log says why";
-  }
-  for (size_t i = 0; i < shots.size(); ++i) by_name.at(photos.usable[i].name)->shot = by_name.at(photos.usable[shots[i]].name)->shot;
 }
 
 void NotePanoramas(const std::vector<size_t>& panoramas, const input::PhotoSet& photos, std::vector<input::InputFile>& files) {

@@ -7,6 +7,7 @@
 #include "app/settings/duration.h"
 #include "app/settings/memory_size.h"
 #include "app/settings/presets.h"
+#include "coordinator/stages/addition.h"
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
@@ -154,6 +155,32 @@ std::filesystem::path PhotoFolderOf(const std::vector<std::string>& photos, cons
   const std::vector<std::filesystem::path> zones = ZonesAmong(photos);
   if (!zones.empty()) return prepare::input::LinkZones(zones, project.ZonesFolder());
   return photos.empty() ? std::filesystem::path() : std::filesystem::path(photos.front());
+}
+
+void AddAddFlag(CLI::App& command, bool& add) {
+  command.add_flag("--add", add,
+                   "add the photos of these folders to the finished project: its poses stay as they are, and only blocks that added photos show are "
+                   "trained again");
+}
+
+coordinator::Settings SettingsToAdd(const CommandState& state, const coordinator::Project& project, const std::vector<config::Override>& flags,
+                                    const std::string& model, bool restart) {
+  if (restart) throw base::UsageError("--add keeps what --restart removes: leave one of them out");
+  if (!model.empty()) throw base::UsageError("--add finds the poses of added photos itself: leave --model out");
+  coordinator::Settings settings = state.Load(ProjectConfig(project), flags);
+  if (std::any_of(flags.begin(), flags.end(), [](const config::Override& flag) { return flag.key == "run.within_s"; })) {
+    throw base::UsageError("--within plans whole runs and cannot go with --add, which trains as long as the project's settings say");
+  }
+  settings.run.within_s = 0.0;
+  return settings;
+}
+
+std::filesystem::path FolderWithAdded(const coordinator::Project& project, const std::vector<std::string>& photos) {
+  std::vector<std::filesystem::path> folders(photos.begin(), photos.end());
+  for (const std::filesystem::path& folder : folders) {
+    if (!std::filesystem::is_directory(folder)) throw base::InputError(folder, "no such folder", "Give the folders of the photos to add");
+  }
+  return coordinator::FolderWithAdded(project, folders);
 }
 
 void AddVideoFlags(CLI::App& command, const Overrides& overrides) {

@@ -68,6 +68,13 @@ std::vector<std::filesystem::path> ZonesAmong(const std::vector<std::string>& ph
 std::vector<std::filesystem::path> VideosAmong(const std::vector<std::string>& photos);
 // The folder of the photos; of several folders one with links to them, in the project (prepare/input/zones.h). Not used for videos.
 std::filesystem::path PhotoFolderOf(const std::vector<std::string>& photos, const coordinator::Project& project);
+// --add: the photos are added to those of a finished project (coordinator/stages/addition.h).
+void AddAddFlag(CLI::App& command, bool& add);
+// Settings of the project, changed by the flags, for --add. Throws base::UsageError for flags that cannot go with it.
+coordinator::Settings SettingsToAdd(const CommandState& state, const coordinator::Project& project, const std::vector<config::Override>& flags,
+                                    const std::string& model, bool restart);
+// PhotoFolderOf for --add. Throws base::UsageError for what is no folder.
+std::filesystem::path FolderWithAdded(const coordinator::Project& project, const std::vector<std::string>& photos);
 // --video-limit.
 void AddVideoFlags(CLI::App& command, const Overrides& overrides);
 // --panoramas, --rig: a file, stored as an absolute path; --nadir-mask.

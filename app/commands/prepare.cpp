@@ -10,6 +10,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
     std::string model;
     std::string out;
     bool restart = false;
+    bool add = false;
   };
   const auto flags = std::make_shared<PrepareFlags>();
   const auto overrides = std::make_shared<std::vector<config::Override>>();
@@ -26,6 +27,7 @@ void AddPrepare(CLI::App& app, CommandState& state) {
                 "photos held out of training, for scoring: every:N, every:N:offset, list:FILE or none");
   AddOptionFlag(*command, overrides, "--masks", "prepare.masks",
                 "folder of masks named PHOTO.jpg.png, or one mask for all photos; pixels with value 0 are ignored; none: no masks");
+  AddAddFlag(*command, flags->add);
   command->add_flag("--restart", flags->restart, "remove the survey and everything made from it first");
   command->footer(
       "Examples:\n"
@@ -41,6 +43,13 @@ void AddPrepare(CLI::App& app, CommandState& state) {
       "Writes out/survey/. Exit status: 0 done, 2 wrong usage, 3 bad input, 130 interrupted.");
   command->callback([&state, flags, overrides] {
     state.run_command = [&state, flags, overrides] {
+      if (flags->add) {
+        const coordinator::Project project = coordinator::Project::Open(flags->out);
+        coordinator::Pipeline pipeline = state.Begin(project, SettingsToAdd(state, project, *overrides, flags->model, flags->restart), false);
+        pipeline.adds = true;
+        coordinator::PrepareStage(pipeline, FolderWithAdded(project, flags->photos), flags->model);
+        return;
+      }
       coordinator::Settings settings = state.Load({}, *overrides);
       std::vector<std::filesystem::path> videos = VideosAmong(flags->photos);
       coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags->out), std::move(settings), flags->restart);

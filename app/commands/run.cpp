@@ -16,7 +16,22 @@ struct RunFlags {
   std::string model;
   std::string out;
   bool restart = false;
+  bool add = false;
 };
+
+void Finish(coordinator::Pipeline& pipeline, const std::filesystem::path& photos, const std::string& model) {
+  coordinator::RequireSameConfiguration(pipeline, "prepare");
+  coordinator::RunStages(pipeline, photos, model);
+  coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
+}
+
+void RunAdding(const CommandState& state, const RunFlags& flags, const std::vector<config::Override>& overrides) {
+  if (!flags.place.empty() || flags.photos.empty()) throw base::UsageError("skyquilt run --add needs the folders with the photos to add");
+  const coordinator::Project project = coordinator::Project::Open(flags.out);
+  coordinator::Pipeline pipeline = state.Begin(project, SettingsToAdd(state, project, overrides, flags.model, flags.restart), false);
+  pipeline.adds = true;
+  Finish(pipeline, FolderWithAdded(project, flags.photos), flags.model);
+}
 
 void Run(const CommandState& state, const RunFlags& flags, const std::vector<config::Override>& overrides) {
   if (flags.photos.empty() == flags.place.empty()) {
@@ -33,9 +48,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   pipeline.videos = std::move(videos);
   coordinator::UseTotalTime(pipeline);
   coordinator::RecallLevelSettings(pipeline);
-  coordinator::RequireSameConfiguration(pipeline, "prepare");
-  coordinator::RunStages(pipeline, PhotoFolderOf(flags.photos, pipeline.project), flags.model);
-  coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
+  Finish(pipeline, PhotoFolderOf(flags.photos, pipeline.project), flags.model);
 }
 
 }  // namespace
@@ -69,6 +82,7 @@ void AddRun(CLI::App& app, CommandState& state) {
   AddBoundaryFlag(*command, overrides);
   AddWithinFlag(*command, overrides);
   AddTrainingFlags(*command, overrides);
+  AddAddFlag(*command, flags->add);
   command->add_flag("--restart", flags->restart, "remove all earlier results in the project folder first");
   command->footer(
       "Examples:\n"
@@ -76,12 +90,14 @@ void AddRun(CLI::App& app, CommandState& state) {
       "  skyquilt run photos/ -o out --blocks 2x2 --time-budget 10min --image-width 1000\n"
       "  skyquilt run photos/ --model sparse/0 -o out --blocks 3x3 --time-budget 15min\n"
       "  skyquilt run monday/ tuesday/ -o out --within 1h\n"
+      "  skyquilt run wednesday/ -o out --add\n"
       "  skyquilt run DJI_0001.MP4 -o out --within 30min\n"
       "  skyquilt run --place town -o out/town --steps 3000\n"
       "  mpirun -n 3 skyquilt run photos/ -o out --time-budget 1h30m\n"
       "Run the same command again to continue after an interruption; finished stages are skipped.\n"
       "Exit status: 0 done, 2 wrong usage, 3 bad input, 4 a block failed (the rest is saved), 130 interrupted (resumable).");
-  command->callback([&state, flags, overrides] { state.run_command = [&state, flags, overrides] { Run(state, *flags, *overrides); }; });
+  command->callback(
+      [&state, flags, overrides] { state.run_command = [&state, flags, overrides] { (flags->add ? RunAdding : Run)(state, *flags, *overrides); }; });
 }
 
 }  // namespace skyquilt::app

@@ -45,6 +45,9 @@ struct Project {
   std::filesystem::path StateFolder() const { return folder / ".state"; }
   std::filesystem::path TrainLedgerFile() const { return StateFolder() / "training.json"; }
   std::filesystem::path TourProposal() const { return StateFolder() / "tour_proposal.txt"; }
+  // What the project was before photos were added to it (stages/addition.h), as a small project with the files that this needs.
+  Project Earlier() const { return Project{StateFolder() / "before"}; }
+  std::filesystem::path CheckpointIdentities() const { return StateFolder() / "checkpoints.json"; }
   std::filesystem::path StampFile(const std::string& stage) const { return StateFolder() / (stage + ".json"); }
 
   // Creates the folder and proves it writable. Throws base::InputError.

@@ -11,8 +11,16 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/encoding/encoding.h"
+#include "worker/block_session.h"
 
 namespace skyquilt::coordinator {
+
+std::optional<brightness::Response> EarlierResponse(const Project& project) {
+  const std::filesystem::path context = project.Earlier().ContextCheckpoint();
+  if (!std::filesystem::exists(context)) return std::nullopt;
+  const std::vector<int> no_bands;
+  return worker::LoadContext(context, &no_bands).response;
+}
 
 std::vector<image::PixelSource> PixelSources(const survey::Survey& survey) {
   std::vector<image::PixelSource> sources;
@@ -121,7 +129,8 @@ bool MustStream(const image::PixelCache& pixels, const survey::Survey& survey, c
 
 FieldTrainer MakeFieldTrainer(const survey::Survey& survey, const partition::BlockSet& blocks, const image::PixelCache& pixels,
                               const Settings& settings, const Project& project, const std::string& config_hash, base::ThreadPool& threads) {
-  const BrightnessPlan plan = PlanBrightness(survey, settings.brightness);
+  const std::optional<brightness::Response> earlier = EarlierResponse(project);
+  const BrightnessPlan plan = PlanBrightness(survey, settings.brightness, earlier ? &*earlier : nullptr);
   // Read when the first block is trained: they are found after the context.
   const auto rejected = std::make_shared<std::optional<worker::RejectedPixels>>();
   return [&survey, &blocks, &pixels, &settings, project, config_hash, plan, rejected, &threads](const FieldJob& job, const worker::Reporter& report) {

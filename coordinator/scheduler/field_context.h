@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,12 +10,16 @@
 #include "coordinator/project/settings.h"
 #include "coordinator/scheduler/field_job.h"
 #include "core/base/thread_pool.h"
+#include "core/brightness/response.h"
 #include "core/image/pixel_cache.h"
 #include "core/survey/survey.h"
 #include "partition/block.h"
 #include "worker/block_spec.h"
 
 namespace skyquilt::coordinator {
+
+// Brightness of the photos that a project had before others were added to it; it stays what it is. Nothing without such photos.
+std::optional<brightness::Response> EarlierResponse(const Project& project);
 
 // Photos and masks in the order of Survey::photos.
 std::vector<image::PixelSource> PixelSources(const survey::Survey& survey);

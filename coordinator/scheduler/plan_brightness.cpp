@@ -6,14 +6,45 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/errors.h"
+
 namespace skyquilt::coordinator {
 namespace {
 
 constexpr float kTagWeight = 0.02F;
 
+// EXIF gains of added photos are relative to the earlier reference.
+void KeepEarlier(const brightness::Response& earlier, const survey::Survey& survey, BrightnessPlan& plan) {
+  const size_t n = earlier.photos();
+  SKYQUILT_CHECK(n <= survey.photos.size() && earlier.vignetting.size() <= plan.response.vignetting.size(), "added photos come behind the others");
+  const auto limit = std::exp(static_cast<double>(brightness::kMaxLogGain));
+  if (earlier.reference_exposure > 0.0 && plan.response.reference_exposure > 0.0) {
+    const double factor = plan.response.reference_exposure / earlier.reference_exposure;
+    for (size_t i = n; i < survey.photos.size(); ++i) {
+      if (plan.learn.tag_weight[i] == 0.0F) continue;  // without tags
+      float& gain = plan.response.exif_gain[i];
+      gain = static_cast<float>(std::clamp(static_cast<double>(gain) * factor, 1.0 / limit, limit));
+    }
+  } else if (plan.response.reference_exposure > 0.0) {
+    // Earlier photos had no tags: nothing relates those of the added ones to them.
+    for (size_t i = n; i < survey.photos.size(); ++i) {
+      plan.response.exif_gain[i] = 1.0F;
+      plan.learn.tag_weight[i] = 0.0F;
+      plan.learn.learns_gain[i] = survey.photos[i].is_test ? 0 : 1;
+    }
+  }
+  plan.response.reference_exposure = earlier.reference_exposure;
+  std::copy(earlier.exif_gain.begin(), earlier.exif_gain.end(), plan.response.exif_gain.begin());
+  std::copy(earlier.log_gain.begin(), earlier.log_gain.end(), plan.response.log_gain.begin());
+  std::copy(earlier.vignetting.begin(), earlier.vignetting.end(), plan.response.vignetting.begin());
+  std::fill_n(plan.learn.learns_gain.begin(), n, uint8_t{0});
+  plan.learn.anchored = true;
+  plan.learn.held_vignetting = earlier.vignetting.size() / 3;
+}
+
 }  // namespace
 
-BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::BrightnessOptions& options) {
+BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::BrightnessOptions& options, const brightness::Response* earlier) {
   BrightnessPlan plan;
   const size_t n = survey.photos.size();
   plan.response = brightness::Response::Neutral(n, survey.cameras.size());
@@ -55,6 +86,7 @@ BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::Br
     plan.learn.learns_gain[i] = learns ? 1 : 0;
     plan.learn.anchored = plan.learn.anchored || !learns;
   }
+  if (earlier != nullptr) KeepEarlier(*earlier, survey, plan);
   if (options.Exif() && n > 0) {
     const auto [darkest, brightest] = std::minmax_element(plan.response.exif_gain.begin(), plan.response.exif_gain.end());
     const double stops = std::log2(static_cast<double>(*brightest) / static_cast<double>(*darkest));

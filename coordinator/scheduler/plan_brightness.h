@@ -20,7 +20,10 @@ struct BrightnessPlan {
 };
 
 // Photos without exposure tags learn their gains even when the correction is "exif" alone: nothing else could align them.
-BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::BrightnessOptions& options);
+// `earlier`: of the photos that the survey had before others were added behind them; they keep it, and the added ones are fitted to them, so that
+// what was trained before goes on looking like what is trained now. Null: none.
+BrightnessPlan PlanBrightness(const survey::Survey& survey, const brightness::BrightnessOptions& options,
+                              const brightness::Response* earlier = nullptr);
 
 // Mean brightness and fraction of clipped pixels of the training photos, from a grid of 64 x 64 pixels in each.
 brightness::BrightnessStatistics MeasureBrightness(const survey::Survey& survey, const image::PixelCache& pixels);

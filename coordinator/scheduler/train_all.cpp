@@ -75,7 +75,9 @@ class Training {
                         {"verbose", input_.verbose},
                         {"quiet", input_.quiet}};
     RankGroup group(comm_, kTagSetup, base::JsonText(setup));
-    if (const std::string remark = PlanBrightness(*input_.survey, settings_.brightness).remark; !remark.empty()) base::LogInfo("{}", remark);
+    const std::optional<brightness::Response> earlier = EarlierResponse(project_);
+    const BrightnessPlan plan = PlanBrightness(*input_.survey, settings_.brightness, earlier ? &*earlier : nullptr);
+    if (!plan.remark.empty()) base::LogInfo("{}", plan.remark);
     const FieldTrainer trainer = MakeFieldTrainer(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
     int per_host = 1;
     int threads = all_threads;
@@ -162,13 +164,18 @@ class Training {
     SetAside(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
 
+  bool IsKept(const std::string& name) const {
+    return std::any_of(input_.kept.begin(), input_.kept.end(), [&name](const FieldOutcome& outcome) { return outcome.job.name == name; });
+  }
+
   void TrainBlocks(const FieldTrainer& trainer, int threads) {
+    for (const FieldOutcome& outcome : input_.kept) ledger_.AddOutcome(outcome);
     std::vector<QueueBlock> waiting;
     for (const partition::Block& block : input_.blocks->blocks) {
       const std::string name = "block_" + block.name;
       if (block.empty) {
         base::LogInfo("{} is empty and skipped: {}", name, block.empty_reason);
-      } else {
+      } else if (!IsKept(name)) {
         waiting.push_back({block.id, name, block.cost, ledger_.AssignedSeconds(name)});
       }
     }

@@ -20,6 +20,8 @@ struct TrainInput {
   const survey::Survey* survey = nullptr;
   const partition::BlockSet* blocks = nullptr;
   std::string config_hash;  // hash of everything the result depends on; checkpoints with another hash are refused
+  // Blocks of an earlier training that stay as they are (kept_blocks.h).
+  std::vector<FieldOutcome> kept = {};
   bool verbose = false;
   bool quiet = false;
 };

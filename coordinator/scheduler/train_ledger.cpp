@@ -60,6 +60,11 @@ void TrainLedger::AddOutcome(const FieldOutcome& outcome) {
   Save();
 }
 
+std::optional<FieldOutcome> TrainLedger::OutcomeOf(const std::string& field) const {
+  const auto found = outcomes_.find(field);
+  return found == outcomes_.end() ? std::nullopt : std::optional(OutcomeFromText(found->second));
+}
+
 void TrainLedger::Save() const {
   std::filesystem::create_directories(project_.StateFolder());
   const json ledger = {{"config_hash", config_hash_}, {"spent_s", spent_s_}, {"promised_s", promised_s_}, {"outcomes", outcomes_}};

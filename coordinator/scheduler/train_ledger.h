@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ class TrainLedger {
   void SetSpent(double seconds, bool now);
 
   void AddOutcome(const FieldOutcome& outcome);
+  // Of a field that has one; nothing for others.
+  std::optional<FieldOutcome> OutcomeOf(const std::string& field) const;
   // The results of every field so far, the context first. threads: of each rank that trains.
   scene::TrainReport Report(int ranks, int threads) const;
 

@@ -27,6 +27,7 @@ struct Pipeline {
   Project project;
   Settings settings;
   bool restart = false;  // remove the results of the first stage that is called and of all later stages
+  bool adds = false;     // photos of "prepare" that a finished project does not have are added to it (addition.h)
   bool quiet = false;
   bool verbose = false;
   // Taken instead of `settings` once the photos are known to look level (level_settings.h); differs in no option of "prepare". None: `settings` hold

@@ -1,5 +1,6 @@
 #include <chrono>
 
+#include "coordinator/stages/addition.h"
 #include "coordinator/stages/stage.h"
 #include "coordinator/stages/training_width.h"
 #include "core/base/amounts.h"
@@ -23,7 +24,8 @@ void RequireSameInputs(const Project& project, const Stage& stage, const FlatOpt
   if (stage.on_new_inputs == OnNewInputs::kRunAgain) return;
   const std::string changes = base::Join(config::Differences(LoadStamp(project, stage.name)->inputs, inputs), "\n  ");
   throw base::UsageError("the inputs of '" + stage.name + "' in " + project.folder.string() + " have changed since it ran:\n  " + changes +
-                         "\nUse another project folder, or --restart to remove the results of '" + stage.name + "' and of all later stages");
+                         "\nUse another project folder, or --restart to remove the results of '" + stage.name + "' and of all later stages" +
+                         (stage.name == "prepare" ? ". To add photos to those of a finished project, give their folder with --add" : ""));
 }
 
 // Throws base::UsageError when the stage's new results would not be those that a later stage used.
@@ -93,7 +95,12 @@ void RunStage(Pipeline& pipeline, const std::string& name) {
   }
   if (freshness == Freshness::kInputsChanged || freshness == Freshness::kNotStarted) RequireBefore(project, stage, stamp.inputs);
   if (freshness == Freshness::kInputsChanged) {
-    RequireSameInputs(project, stage, stamp.inputs);
+    if (name == "prepare" && pipeline.adds) {
+      BeginAddition(pipeline);
+    } else if (!FollowsAddition(project, name)) {
+      RequireSameInputs(project, stage, stamp.inputs);
+    }
+    if (name == "train" && FollowsAddition(project, name)) RemoveChangedFields(project);
     base::LogInfo("{}: running again, because its inputs have changed", name);
   }
   SaveStamp(project, stamp);

@@ -3,7 +3,9 @@
 #include "coordinator/rendering/scene_session.h"
 #include "coordinator/scheduler/expected_steps.h"
 #include "coordinator/scheduler/field_context.h"
+#include "coordinator/scheduler/kept_blocks.h"
 #include "coordinator/scheduler/train_all.h"
+#include "coordinator/stages/addition.h"
 #include "coordinator/stages/first_picture.h"
 #include "coordinator/stages/level_settings.h"
 #include "coordinator/stages/product_area.h"
@@ -20,6 +22,7 @@
 #include "masks/make_masks.h"
 #include "partition/altitude.h"
 #include "partition/make_blocks.h"
+#include "prepare/add_photos.h"
 #include "prepare/prepare.h"
 #include "products/camera_path.h"
 #include "products/elevation.h"
@@ -80,6 +83,10 @@ std::string PrepareBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const auto show = [&](const survey::Survey& survey, std::chrono::steady_clock::time_point poses_known) {
     MakeFirstPicture(pipeline, survey, poses_known, threads);
   };
+  if (IsAddition(pipeline.project)) {
+    prepare::AddPhotos(input, EarlierSurveyOf(pipeline.project), pipeline.settings.prepare, threads, pipeline.comm.size() > 1 ? &ranks : nullptr);
+    return StageStamp::kDone;
+  }
   const survey::Survey survey = prepare::Prepare(input, pipeline.settings.prepare, threads, pipeline.comm.size() > 1 ? &ranks : nullptr, show);
   if (UseLevelSettings(pipeline, survey)) base::WriteFileAtomically(pipeline.project.ConfigFile(), pipeline.settings.Toml());
   return StageStamp::kDone;
@@ -94,6 +101,12 @@ std::string MasksBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
 
 std::string PartitionBody(Pipeline& pipeline, const StageStamp& stamp) {
   const survey::Survey survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
+  if (const std::filesystem::path earlier = pipeline.project.Earlier().BlocksFile(); std::filesystem::exists(earlier)) {
+    const partition::BlockSet extended = partition::ExtendBlocks(survey, partition::LoadBlocks(earlier), pipeline.settings.partition);
+    partition::SaveBlocks(extended, pipeline.project.BlocksFile());
+    LogBlocks(extended);
+    return StageStamp::kDone;
+  }
   const double block_steps = ExpectedBlockSteps(pipeline.settings, pipeline.comm.size(), pipeline.comm.local_size());
   partition::BlockSet blocks = partition::MakeBlocks(survey, pipeline.settings.partition, pipeline.settings.run.image_width, block_steps);
   if (blocks.config_hash.empty()) blocks.config_hash = stamp.Hash();
@@ -105,7 +118,12 @@ std::string PartitionBody(Pipeline& pipeline, const StageStamp& stamp) {
 std::string TrainBody(Pipeline& pipeline, const StageStamp& stamp) {
   const survey::Survey survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
   const partition::BlockSet blocks = partition::LoadBlocks(pipeline.project.BlocksFile());
-  const TrainInput input{.survey = &survey, .blocks = &blocks, .config_hash = stamp.Hash(), .verbose = pipeline.verbose, .quiet = pipeline.quiet};
+  const TrainInput input{.survey = &survey,
+                         .blocks = &blocks,
+                         .config_hash = stamp.Hash(),
+                         .kept = KeptBlocks(pipeline.project, survey, blocks, true),
+                         .verbose = pipeline.verbose,
+                         .quiet = pipeline.quiet};
   pipeline.training = TrainAll(pipeline.comm, input, pipeline.settings, pipeline.project);
   return pipeline.training.Failed().empty() ? StageStamp::kDone : StageStamp::kFailed;
 }

@@ -112,7 +112,10 @@ std::vector<Stage> MakeTable() {
        .options = {"prepare."},
        .ignored_options = OptionsAmongInputs(),
        .inputs = PrepareInputs,
-       .outputs = [](const Project& p) { return Paths{p.SurveyFolder()}; },
+       .outputs =
+           [](const Project& p) {
+             return Paths{p.SurveyFolder(), p.Earlier().folder};
+           },
        .completion_files = [](const Project& p) { return Paths{SurveyFile(p)}; },
        .body = PrepareBody,
        .on_new_inputs = OnNewInputs::kRefuse},
@@ -139,7 +142,10 @@ std::vector<Stage> MakeTable() {
            [](const Pipeline& pipeline) {
              return FlatOptions{{"survey", SurveyIdentity(pipeline.project)}};
            },
-       .outputs = [](const Project& p) { return Paths{p.BlocksFile()}; },
+       .outputs =
+           [](const Project& p) {
+             return Paths{p.BlocksFile(), p.Earlier().BlocksFile()};
+           },
        .completion_files = [](const Project& p) { return Paths{p.BlocksFile()}; },
        .body = PartitionBody,
        .on_new_inputs = OnNewInputs::kRefuse},
@@ -159,7 +165,13 @@ std::vector<Stage> MakeTable() {
            },
        .outputs =
            [](const Project& p) {
-             return Paths{p.CheckpointFolder(), p.MoversFolder(), p.TrainReport(), p.PixelCacheFile().parent_path(), p.TrainLedgerFile()};
+             return Paths{p.CheckpointFolder(),
+                          p.MoversFolder(),
+                          p.TrainReport(),
+                          p.PixelCacheFile().parent_path(),
+                          p.TrainLedgerFile(),
+                          p.Earlier().CheckpointFolder(),
+                          p.Earlier().TrainLedgerFile()};
            },
        .completion_files = TrainProof,
        .body = TrainBody,

@@ -26,6 +26,7 @@ struct LearnerOptions {
   std::vector<float> tag_weight;
   bool anchored = false;        // some training photos keep their gains and fix the common factor: the mean is not subtracted
   bool vignetting = false;      // also solve for the cameras' vignetting, from tie points only
+  size_t held_vignetting = 0;   // of so many first cameras it is known and stays
   ShadingOptions shading = {};  // of the photos, from tie points and then while the field trains
 
   // Whether any photo learns its gain.

@@ -121,6 +121,10 @@ bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const
     const BundlePhoto photo = TagsOfPose(bundle, shots, static_cast<uint32_t>(i));
     problem.SetManifold(poses[i].data(), &pose_manifold);
     ordering->AddElementToGroup(poses[i].data(), kPoseGroup);
+    if (photo.held) {
+      problem.SetParameterBlockConstant(poses[i].data());
+      continue;
+    }
     if (photo.gps && shift != nullptr) {
       problem.AddResidualBlock(new ShiftedPlaceCost(*photo.gps, stage.gps_factor * photo.gps_sigma), &tag_loss, poses[i].data(), new_shift.data());
     } else if (photo.gps) {
@@ -170,7 +174,7 @@ bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const
     for (const uint32_t photo : shot.photos) PlaceByRig(adjusted, bundle.photos[photo]);
   }
   for (size_t i = 0; i < poses.size(); ++i) {
-    if (sees[i] == 0) continue;
+    if (sees[i] == 0 || bundle.photos[i].held) continue;
     bundle.photos[i].cam_from_enu = Eigen::Quaterniond(Eigen::Map<const Eigen::Vector4d>(poses[i].data()));
     bundle.photos[i].centre = Eigen::Map<const Eigen::Vector3d>(poses[i].data() + 4);
   }

@@ -31,11 +31,10 @@ std::vector<int> HeldNumbersOf(const BundleLens& lens);
 // Positions with an error beyond this many sigmas lose almost all weight (Cauchy).
 constexpr double kTagLoss = 2.0;
 
-// Adjusts all placed photos and the points of `tracks` to the entries that agree. The placed photos of a shot get one pose, and the tags of its first
-// tagged one count for it. Uses one thread: with several, Ceres adds what points say about
-// photos in the order in which the threads come to them, so that two runs on one machine would differ, and poses with them. Throws
-// base::Interrupted. False when no solution is found; then nothing has changed. `on_iteration` is called after each. `shift`: of the positions, with
-// its value to begin with; null: none.
+// Adjusts all placed photos that are not held and the points of `tracks` to the entries that agree. The placed photos of a shot get one pose, and the
+// tags of its first tagged one count for it. Uses one thread: with several, Ceres adds what points say about photos in the order in which the threads
+// come to them, so that two runs on one machine would differ, and poses with them. Throws base::Interrupted. False when no solution is found; then
+// nothing has changed. `on_iteration` is called after each. `shift`: of the positions, with its value to begin with; null: none.
 bool AdjustBundle(BundleProblem& bundle, std::span<const uint32_t> tracks, const BundleStage& stage, const std::function<void()>& on_iteration,
                   Eigen::Vector3d* shift = nullptr);
 

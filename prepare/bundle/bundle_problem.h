@@ -32,6 +32,7 @@ struct BundlePhoto {
   Eigen::Quaterniond cam_from_enu = Eigen::Quaterniond::Identity();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // ENU metres
   bool placed = false;                               // has a pose
+  bool held = false;                                 // keeps it in adjustments
   int lens = 0;                                      // index of its lens
   // Photos with the same number were taken at once by the cameras of a rig, and have one pose (shots.h); negative: alone.
   int shot = -1;

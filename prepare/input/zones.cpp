@@ -43,6 +43,23 @@ std::string LongName(const fs::path& zone) {
   return zone.parent_path().filename().string() + "_" + zone.filename().string();
 }
 
+// Makes the folder hold these links and nothing else.
+void WriteLinks(const std::map<std::string, fs::path>& links, const fs::path& folder) {
+  fs::create_directories(folder);
+  base::RequireWritableFolder(folder);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const auto link = links.find(entry.path().filename().string());
+    std::error_code ignored;
+    if (link == links.end() || !fs::equivalent(entry.path(), link->second, ignored)) fs::remove(entry.path());
+  }
+  std::string names;
+  for (const auto& [name, zone] : links) {
+    if (!fs::exists(fs::symlink_status(folder / name))) fs::create_directory_symlink(zone, folder / name);
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  base::LogInfo("photos of {} zones: {}", links.size(), names);
+}
+
 }  // namespace
 
 fs::path LinkZones(const std::vector<fs::path>& zones, const fs::path& folder) {
@@ -57,19 +74,38 @@ fs::path LinkZones(const std::vector<fs::path>& zones, const fs::path& folder) {
       throw base::UsageError("the folders " + links.at(name).string() + " and " + zone.string() + " have one name: rename one of them");
     }
   }
-  fs::create_directories(folder);
-  base::RequireWritableFolder(folder);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const auto link = links.find(entry.path().filename().string());
-    std::error_code ignored;
-    if (link == links.end() || !fs::equivalent(entry.path(), link->second, ignored)) fs::remove(entry.path());
+  WriteLinks(links, folder);
+  return folder;
+}
+
+fs::path AddZones(const fs::path& earlier, const std::vector<fs::path>& zones, const fs::path& folder) {
+  std::map<std::string, fs::path> links;
+  std::vector<fs::path> all;
+  if (fs::weakly_canonical(earlier) == fs::weakly_canonical(folder)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      links.emplace(entry.path().filename().string(), fs::canonical(entry.path()));
+      all.push_back(links.at(entry.path().filename().string()));
+    }
+  } else {
+    all.push_back(earlier);
   }
-  std::string names;
-  for (const auto& [name, zone] : links) {
-    if (!fs::exists(fs::symlink_status(folder / name))) fs::create_directory_symlink(zone, folder / name);
-    names += (names.empty() ? "" : ", ") + name;
+  const size_t n_linked = links.size();
+  for (const fs::path& zone : zones) {
+    const auto same = [&](const fs::path& other) {
+      std::error_code ignored;
+      return fs::equivalent(zone, other, ignored) || fs::equivalent(zone / "images", other, ignored);
+    };
+    if (std::none_of(all.begin(), all.end(), same)) all.push_back(zone);
   }
-  base::LogInfo("photos of {} zones: {}", links.size(), names);
+  if (all.size() == 1) return earlier;
+  if (n_linked == 0) return LinkZones(all, folder);
+  const std::vector<fs::path> resolved = Resolved(all, folder);
+  for (size_t i = n_linked; i < resolved.size(); ++i) {
+    const std::string own = resolved[i].filename().string();
+    if (links.emplace(own, resolved[i]).second || links.emplace(LongName(resolved[i]), resolved[i]).second) continue;
+    throw base::UsageError("the folders " + links.at(own).string() + " and " + resolved[i].string() + " have one name: rename one of them");
+  }
+  WriteLinks(links, folder);
   return folder;
 }
 

@@ -12,4 +12,9 @@ namespace skyquilt::prepare::input {
 // `folder` inside of one.
 std::filesystem::path LinkZones(const std::vector<std::filesystem::path>& zones, const std::filesystem::path& folder);
 
+// The same with zones beside those of an earlier survey, whose links keep their names. `earlier`: the folder of its photos, `folder` itself or one
+// without zones. Zones that are there already are not added again. Returns the folder of all photos: `earlier` when there is nothing to add to it.
+std::filesystem::path AddZones(const std::filesystem::path& earlier, const std::vector<std::filesystem::path>& zones,
+                               const std::filesystem::path& folder);
+
 }  // namespace skyquilt::prepare::input

@@ -39,9 +39,11 @@ std::optional<geo::Geodetic> PlaceOf(const survey::PhotoTags& tags) {
   return geo::IsValid(place) ? std::optional(place) : std::nullopt;
 }
 
-std::vector<TaggedPose> TaggedPosesOf(const survey::ColmapModel& model, const std::vector<input::PhotoFile>& photos) {
+std::vector<TaggedPose> TaggedPosesOf(const survey::ColmapModel& model, const std::vector<input::PhotoFile>& photos,
+                                      const std::optional<geo::Geodetic>& about) {
   std::unordered_map<std::string, const survey::PhotoTags*> tags_of;
   std::optional<geo::EnuFrame> frame;
+  if (about) frame.emplace(*about);
   for (const input::PhotoFile& photo : photos) {
     const auto place = PlaceOf(photo.tags);
     if (!place) continue;
@@ -135,10 +137,14 @@ geo::Similarity3d FitFree(const std::vector<TaggedPose>& poses, const std::vecto
   return {scale, Eigen::Quaterniond(Eigen::Matrix3d(turn / scale)), map.topRightCorner<3, 1>()};
 }
 
+}  // namespace
+
 void Transform(const geo::Similarity3d& map, survey::ColmapModel& model) {
   for (survey::ColmapImage& image : model.images) image.cam_from_world = geo::TransformCameraWorld(image.cam_from_world, map);
   for (survey::ColmapPoint& point : model.points) point.x_in_world = map * point.x_in_world;
 }
+
+namespace {
 
 // Of a model in ENU metres.
 std::vector<Footprint> FootprintsOf(const survey::ColmapModel& model) {
@@ -199,8 +205,9 @@ void Append(Part part, Part& whole) {
 
 }  // namespace
 
-std::optional<TaggedPlace> PlaceByTags(const survey::ColmapModel& model, const std::vector<input::PhotoFile>& photos) {
-  const std::vector<TaggedPose> poses = TaggedPosesOf(model, photos);
+std::optional<TaggedPlace> PlaceByTags(const survey::ColmapModel& model, const std::vector<input::PhotoFile>& photos,
+                                       const std::optional<geo::Geodetic>& about) {
+  const std::vector<TaggedPose> poses = TaggedPosesOf(model, photos, about);
   if (poses.size() < kLeastOfPart) return std::nullopt;
   const std::optional<Eigen::Quaterniond> level = RotationByAngles(poses);
   std::vector<char> used(poses.size(), 1);

@@ -188,7 +188,7 @@ Eigen::VectorXd Solve(std::span<const Sighting> sightings, const std::vector<dou
 // Fits the vignetting of every camera to the residuals of the gains, all colours together. It stays zero when it explains only a small part of the
 // residuals, because reflection that depends on the viewing angle looks similar.
 void SolveVignetting(std::span<const Sighting> sightings, const std::array<std::vector<double>, 3>& weight,
-                     const std::array<Eigen::VectorXd, 3>& gains, brightness::Response& response) {
+                     const std::array<Eigen::VectorXd, 3>& gains, size_t held, brightness::Response& response) {
   const size_t cameras = response.vignetting.size() / 3;
   std::vector<Eigen::Matrix3d> left(cameras, Eigen::Matrix3d::Identity() * kVignettingRidge);
   std::vector<Eigen::Vector3d> right(cameras, Eigen::Vector3d::Zero());
@@ -210,7 +210,7 @@ void SolveVignetting(std::span<const Sighting> sightings, const std::array<std::
       }
     });
   }
-  for (size_t camera = 0; camera < cameras; ++camera) {
+  for (size_t camera = held; camera < cameras; ++camera) {
     Eigen::Vector3d solved = linear::SolveSymmetric(left[camera], right[camera]);
     if (!(solved.dot(right[camera]) > kVignettingExplains * squares[camera])) solved.setZero();
     for (size_t k = 0; k < 3; ++k) response.vignetting[3 * camera + k] = static_cast<float>(solved[static_cast<Eigen::Index>(k)]);
@@ -303,7 +303,7 @@ bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
         }
       });
     });
-    if (learn.vignetting) SolveVignetting(unshaded, weight, gains, response);
+    if (learn.vignetting) SolveVignetting(unshaded, weight, gains, learn.held_vignetting, response);
     if (shades) SolveShading(WithoutOtherFactors(sightings, weight, gains, response), learn.shading, response);
     scatter = std::max(kScatter, kScatterShrinks * scatter);
   }

@@ -1,6 +1,9 @@
 #include "prepare/poses/seed/bundle_model.h"
 
+#include <unordered_map>
 #include <vector>
+
+#include "prepare/bundle/feature_tracks.h"
 
 namespace skyquilt::prepare::poses {
 namespace {
@@ -37,6 +40,23 @@ std::vector<uint32_t> TracksOfModel(const bundle::BundleProblem& bundle) {
 }
 
 }  // namespace
+
+void FillTracks(const SeedInput& input, bundle::BundleProblem& bundle) {
+  std::unordered_map<uint32_t, uint32_t> index;
+  std::vector<size_t> n_features;
+  for (uint32_t i = 0; i < input.photos.size(); ++i) {
+    index.emplace(input.photos[i].image_id, i);
+    n_features.push_back(input.photos[i].features.size());
+  }
+  std::vector<bundle::IndexedPair> pairs;
+  for (const PairMatches& matches : input.pairs) pairs.push_back({index.at(matches.image_a), index.at(matches.image_b), matches.features});
+  bundle.tracks = bundle::JoinMatches(pairs, n_features);
+  for (const bundle::TrackEntry& entry : bundle.tracks.entries)
+    bundle.pixel.push_back(input.photos[entry.photo].features[entry.feature].cast<double>());
+  bundle.point.assign(bundle.tracks.size(), Eigen::Vector3d::Zero());
+  bundle.has_point.assign(bundle.tracks.size(), 0);
+  bundle.agrees.assign(bundle.tracks.entries.size(), 0);
+}
 
 void ModelOfBundle(const SeedInput& input, const bundle::BundleProblem& bundle, survey::ColmapModel* model,
                    survey::ColmapObservations* observations) {

@@ -53,6 +53,24 @@ TEST_F(FoldersOfPhotos, AreLinkedByTheirNames) {
   EXPECT_EQ(Links({folder_ / "simulated", north}), (Names{"images", "north"}));
 }
 
+TEST_F(FoldersOfPhotos, AreAddedToThoseOfAProject) {
+  using Names = std::set<std::string>;
+  const fs::path links = folder_ / "out" / "zones", north = Zone("monday/north"), south = Zone("south");
+  const auto names = [&] {
+    Names found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(links)) found.insert(entry.path().filename().string());
+    return found;
+  };
+  EXPECT_EQ(AddZones(north, {north}, links), north) << "nothing to add";
+  EXPECT_EQ(AddZones(north, {south}, links), links);
+  EXPECT_EQ(names(), (Names{"north", "south"}));
+  AddZones(links, {south / "", Zone("tuesday/north")}, links);
+  EXPECT_EQ(names(), (Names{"north", "south", "tuesday_north"})) << "earlier ones keep their names, one that is there is not added again";
+  EXPECT_THROW(AddZones(links, {Zone("south/inner")}, links), base::UsageError);
+  EXPECT_THROW(AddZones(links, {folder_ / "none"}, links), base::InputError);
+  EXPECT_EQ(names(), (Names{"north", "south", "tuesday_north"})) << "nothing has changed";
+}
+
 TEST_F(FoldersOfPhotos, ThatCannotBeOneSurveyAreRefused) {
   const fs::path north = Zone("north"), inner = Zone("north/inner");
   EXPECT_NE(Refusal({north, north}).find("twice"), std::string::npos);

@@ -80,6 +80,7 @@ struct PlaceSpec {
   double sun_azimuth_deg = 140.0;
   double sun_elevation_deg = 48.0;
   double ambient_voxel_m = 3.0;
+  bool marsh = false;       // plants and trees on a tidal flat
   double sky_clouds = 0.0;  // 0..1, contrast of the clouds; photos see them mirrored by wet surfaces
 };
 

@@ -21,7 +21,9 @@ struct StudyFlags {
   std::string shapes;                 // empty: the settings' own
   std::vector<double> overlaps;       // of methods; empty: the settings' own
   std::vector<double> altitudes;      // of methods; empty: the settings' own
+  std::string data, pictures;         // of methods: a published data set, and its folder of pictures
   std::vector<int> seeds;             // empty: the settings' own
+  int steps = 0;                      // of light and of methods with a data set; 0: a time decides
   bool quick = false, restart = false, keep = false, json = false;
 };
 

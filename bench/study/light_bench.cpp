@@ -75,11 +75,10 @@ StudyBench LightBench(Study& study, const LightBenchOptions& options) {
       sun.lights.size(), intensity.lights.size());
   page.verdicts = SunVerdicts(sun);
   for (std::string& verdict : IntensityVerdicts(intensity)) page.verdicts.push_back(std::move(verdict));
-  const auto figure = [&page](const std::string& label, double share, const std::string& note) {
-    if (std::isfinite(share)) page.figures.push_back({label, fmt::format("{:.0f} %", 100.0 * share), note});
-  };
-  figure("Movement of shadows, mixed codes", MeanBetween(sun, sun.every_second, kBetweenLook, &LightScore::followed), "0 %: they fade");
-  figure("own codes", MeanBetween(sun, sun.all, kOwnLook, &LightScore::followed), "where the light was trained");
+  if (const double way = MovementOfShadows(sun); std::isfinite(way)) {
+    page.figures.push_back(
+        {"Movement of shadows", fmt::format("{:.0f} %", 100.0 * way), "mixed codes; 0 %: a cross-fade, 100 %: the light's own code"});
+  }
   page.sections.push_back({.id = "sun",
                            .title = "Elevation of the sun",
                            .lead = "",

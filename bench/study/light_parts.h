@@ -23,6 +23,9 @@ double LightValue(const std::string& folder);
 const LightScore* FindScore(const VariantResult& result, const std::string& light, const std::string& look);
 // Mean over the lights between of a member of their scores in a look; NaN when one is missing.
 double MeanBetween(const LightSet& set, const VariantResult& result, const std::string& look, double LightScore::*member);
+// How mixed codes show shadows between the trained lights: 0 as a cross-fade of the renderings with both codes, 1 as the light's own code does. NaN
+// when that shows too little of their movement to tell.
+double MovementOfShadows(const LightSet& set);
 
 // One row per light. unit: of the light's number.
 BenchTable LightTable(const LightSet& set, const std::string& name, const std::string& unit);

@@ -78,21 +78,26 @@ TEST(PlanLooks, MixesTheTrainedNeighboursByDistance) {
   EXPECT_EQ(PlanLooks(lights, std::vector<bool>(5, true), true).size(), 5U);
 }
 
-LightSet Set(double mixed, double own) {
+LightSet Shadows(double lower, double upper, double mixed, double own) {
   LightSet set;
   set.lights = {"sun_05", "sun_10", "sun_15"};
-  set.every_second.lights = {{.light = "sun_10", .look = kBetweenLook, .psnr_db = 20.0, .followed = mixed},
-                             {.light = "sun_10", .look = kLowerLook, .psnr_db = 19.0}};
+  set.every_second.lights = {
+      {.light = "sun_10", .look = kBetweenLook, .psnr_db = 20.0, .moved_share = 0.1, .followed = mixed},
+      {.light = "sun_10", .look = kLowerLook, .psnr_db = 19.0, .followed = lower},
+      {.light = "sun_10", .look = kUpperLook, .psnr_db = 18.0, .followed = upper},
+  };
   set.all.lights = {{.light = "sun_10", .look = kOwnLook, .psnr_db = 21.0, .followed = own}};
   set.plain.lights = {{.light = "sun_10", .look = kNoLook, .psnr_db = 15.0}};
   return set;
 }
 
 TEST(LightVerdicts, SayWhetherShadowsFadeOrMove) {
-  EXPECT_NE(SunVerdicts(Set(0.1, 0.8))[0].find("fade instead of moving"), std::string::npos);
-  EXPECT_NE(SunVerdicts(Set(0.7, 0.8))[0].find("move, other than published"), std::string::npos);
-  EXPECT_NE(SunVerdicts(Set(0.1, 0.2))[0].find("hardly held by codes"), std::string::npos);
-  EXPECT_NE(SunVerdicts(Set(LightScore::kNone, 0.2))[0].find("nothing is said"), std::string::npos);
+  EXPECT_NEAR(MovementOfShadows(Shadows(0.3, -0.1, 0.2, 0.5)), 0.25, 1e-12);
+  EXPECT_NE(SunVerdicts(Shadows(0.3, -0.1, 0.2, 0.5))[1].find("25 % of the way"), std::string::npos);
+  EXPECT_NE(SunVerdicts(Shadows(0.3, -0.1, 0.2, 0.5))[1].find("fade more than they move"), std::string::npos);
+  EXPECT_NE(SunVerdicts(Shadows(0.1, 0.1, 0.7, 0.8))[1].find("move more than they fade"), std::string::npos);
+  EXPECT_NE(SunVerdicts(Shadows(0.1, 0.1, 0.1, 0.2))[1].find("hardly held by codes"), std::string::npos);
+  EXPECT_NE(SunVerdicts(Shadows(0.1, 0.1, LightScore::kNone, 0.2))[0].find("nothing is said"), std::string::npos);
 }
 
 TEST(LightVerdicts, TellTheStopsThatWereFound) {

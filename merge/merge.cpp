@@ -76,9 +76,12 @@ void MergeScene(const MergeInput& input) {
   writer.SetAttribute("config", input.config_toml);
   writer.SetAttribute("config_hash", input.config_hash);
   writer.SetAttribute("blocks", static_cast<int64_t>(blocks.size()));
-  if (input.use_context) scene::PutSceneField(context.description, input.context, scene::kContextPrefix, writer, input.storage);
-  for (size_t i = 0; i < blocks.size(); ++i)
-    scene::PutSceneField(blocks[i], files[i], scene::BlockPrefix(static_cast<int64_t>(i)), writer, input.storage);
+  const auto put = [&](const render::TrainedField& field, const std::filesystem::path& file, const std::string& prefix) {
+    const std::vector<float> code = input.look.empty() ? std::vector<float>() : CodeOfLook(input.look, file);
+    scene::PutSceneField(field, file, prefix, writer, input.storage, code);
+  };
+  if (input.use_context) put(context.description, input.context, scene::kContextPrefix);
+  for (size_t i = 0; i < blocks.size(); ++i) put(blocks[i], files[i], scene::BlockPrefix(static_cast<int64_t>(i)));
   writer.SetAttribute(scene::kCoveredBlocksAttribute, static_cast<int64_t>(covered.size()));
   for (size_t i = 0; i < covered.size(); ++i) scene::PutDescription(covered[i], scene::CoveredBlockPrefix(static_cast<int64_t>(i)), writer);
   writer.Commit(input.scene);

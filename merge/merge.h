@@ -11,6 +11,7 @@
 #include "core/geo/height_reference.h"
 #include "core/geo/place_accuracy.h"
 #include "core/scene/scene.h"
+#include "merge/look.h"
 
 namespace skyquilt::merge {
 
@@ -30,14 +31,16 @@ struct MergeInput {
   geo::HeightReference height_reference = geo::HeightReference::kUnknown;
   scene::Borders borders = scene::Borders::kSmooth;                 // how neighbouring blocks are joined
   checkpoint::Precision storage = checkpoint::Precision::kFloat32;  // of the hash tables
+  std::vector<LookPart> look;                                       // whose codes the scene shows; empty: the mean look
   bool use_context = true;  // false: leave the context field out, so that it does not fill places outside all blocks
   std::string config_toml;  // the whole configuration; stored in the scene
   std::string config_hash;
   std::filesystem::path scene;  // out
 };
 
-// Throws base::InputError when there is no block, or only blocks that show a context that is left out, when a checkpoint is missing, damaged, not
-// trained to the end or of a survey with another origin, and when the scene cannot be written.
+// Throws base::UsageError for a look that the checkpoints do not have, base::InputError when there is no block, or only blocks that show a context
+// that is left out, when a checkpoint is missing, damaged, not trained to the end or of a survey with another origin, and when the scene cannot be
+// written.
 void MergeScene(const MergeInput& input);
 
 }  // namespace skyquilt::merge

@@ -1,5 +1,7 @@
 #include "merge/merge_options.h"
 
+#include "merge/look.h"
+
 namespace skyquilt::merge {
 
 std::vector<config::Field<MergeOptions>> MergeOptions::Fields() {
@@ -11,11 +13,16 @@ std::vector<config::Field<MergeOptions>> MergeOptions::Fields() {
        "clamped)"},
       {"borders", &O::borders, Range::OneOf({"smooth", "hard"}),
        "smooth: neighbouring blocks are blended where their margins overlap; hard: no blending, every block ends at the faces of its box"},
+      {"look", &O::look, Range(),
+       "with train.appearance_codes: the photo, or with train.appearance_of = folder the folder, as whose photos the scene looks; several with "
+       "weights "
+       "are mixed, such as morning:0.5,noon:0.5; empty: the mean look"},
   };
 }
 
 void MergeOptions::Check() const {
   config::CheckRanges("merge", *this);
+  ParseLook(look);
 }
 
 checkpoint::Precision MergeOptions::Storage() const {

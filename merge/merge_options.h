@@ -12,6 +12,7 @@ namespace skyquilt::merge {
 
 struct MergeOptions {
   std::string borders = "smooth";  // "smooth" (blended) or "hard"
+  std::string look;                // whose appearance codes the scene shows, see merge/look.h; empty: the mean look
   std::string storage = "fp32";    // of the hash tables: "fp32", "bf16" or "fp16"
 
   static std::vector<config::Field<MergeOptions>> Fields();

@@ -6,7 +6,8 @@
   scripts/brightness_study.py -o study --skyquilt build/release/skyquilt --quick
 
 Studies: exposure (drift, jumps, wrong tags, no tags), hidden (under- and over-exposed surveys), light (brighter, darker and moved sun), clouds
-(drifting shadows of clouds, several seeds).
+(drifting shadows of clouds, several seeds), classes (under- and over-exposed, by class of surface: with and without the concealing field, with plain loss,
+with other target brightnesses).
 Simulations and finished runs in the output folder are used again, so a stopped study resumes. Writes study_NAME.md, study_NAME.json and images.
 Needs python3-numpy and python3-pil. Every run has the same number of steps, so other work on the machine changes only the time.
 Exit status: 0 done, 1 skyquilt failed, 2 wrong usage or a missing module.
@@ -33,6 +34,34 @@ ROUGH = {"exposure_drift_stops": 1.0, "exposure_jumps_stops": 1.0, "exposure_err
 NORMAL = {**STEADY, "exposure_offset_stops": -1.25}
 UNDER = {**STEADY, "exposure_offset_stops": -5.4}
 OVER = {**STEADY, "exposure_offset_stops": 1.08}
+
+
+# As numbered in truth/classes: survey::SurfaceClass.
+CLASSES = {"ground": 3, "vegetation": 11, "water": 8, "trees": 5}
+MARSH = {"marsh": "true", "oblique": "false", "image_width": 320}
+TARGETS = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
+
+
+def linear(display):
+    """Linear light of display values (sRGB), both 0..1."""
+    return np.where(display <= 0.04045, display / 12.92, ((display + 0.055) / 1.055) ** 2.4)
+
+
+def display(light):
+    light = np.clip(light, 0.0, 1.0)
+    return np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1.0 / 2.4) - 0.055)
+
+
+def psnr(squared_errors):
+    return -10.0 * math.log10(max(float(np.mean(squared_errors)), 1e-10)) if squared_errors.size else float("nan")
+
+
+def one_gain(shown, truth):
+    """`shown` times the one factor on linear light that brings it closest to `truth`; display values."""
+    light, wanted = linear(shown), linear(truth)
+    factors = np.exp(np.linspace(-3.0, 3.0, 241))
+    errors = [float(np.mean((display(factor * light[::7]) - truth[::7]) ** 2)) for factor in factors]
+    return display(factors[int(np.argmin(errors))] * light)
 
 
 def settings(section, options):
@@ -183,6 +212,57 @@ class Study:
         self.title("Concealing field")
         self.table(["survey", "method", "PSNR against the normal photo (dB)", "SSIM", "PSNR against the photo as taken"], rows)
 
+    def views_of(self, name):
+        """Images of the scene at normal brightness from the poses of all held-out photos."""
+        folder = self.out / "view" / name / "held_out"
+        if not list(folder.glob("*.png")):
+            self.call("render", self.out / "run" / name, "--test", "--no-depth", "--exposure", "normal", "-o", folder, "--quiet")
+        return sorted(folder.glob("*.png"))
+
+    def by_class(self, name, truth, marsh):
+        """Against photos at normal exposure, over all held-out photos: mean display value; PSNR of all and per class, as shown and after one gain."""
+        shown, wanted, kinds = [], [], []
+        for view in self.views_of(name):
+            image = np.asarray(Image.open(view).convert("RGB"), dtype=np.float64) / 255.0
+            photo = Image.open(truth / (view.stem + ".jpg")).convert("RGB").resize((image.shape[1], image.shape[0]), Image.BOX)
+            kind = Image.open(marsh / "truth" / "classes" / (view.stem + ".png")).resize(photo.size, Image.NEAREST)
+            shown.append(image.reshape(-1, 3))
+            wanted.append(np.asarray(photo, dtype=np.float64).reshape(-1, 3) / 255.0)
+            kinds.append(np.asarray(kind).ravel())
+        shown, wanted, kinds = np.concatenate(shown), np.concatenate(wanted), np.concatenate(kinds)
+        scores = {"mean": float(shown.mean())}
+        for form, image in (("shown", shown), ("gain", one_gain(shown, wanted))):
+            errors = (image - wanted) ** 2
+            scores[form] = {"all": psnr(errors), **{one: psnr(errors[kinds == number]) for one, number in CLASSES.items()}}
+        self.results[name]["classes"] = scores
+        return scores
+
+    def classes(self):
+        normal = self.simulate("marsh_normal", "tidalflat", {**NORMAL, **MARSH})
+        truth = normal / "images"
+        head = ["survey", "method", "mean shown", "all", *CLASSES, "after one gain: all", *CLASSES]
+        rows = []
+        for kind, options in [("under", UNDER), ("over", OVER)]:
+            survey = self.simulate(f"marsh_{kind}", "tidalflat", {**options, **MARSH})
+            target = lambda e: ["--set", f"brightness.target_brightness={e}"]
+            forms = [("no luminance field", "none", "exif", []),
+                     ("plain loss", "plain", "exif,luminance", ["--set", "brightness.luminance_loss=plain"]),
+                     *[(f"field, e = {e}", f"e{e}", "exif,luminance", target(e)) for e in TARGETS]]
+            for what, name, brightness, extra in forms:
+                name = f"marsh_{kind}_{name}"
+                if "luminance" in brightness:
+                    extra = [*extra, "--set", f"brightness.luminance_mode={kind}"]
+                self.run(name, survey, brightness, *extra)
+                scores = self.by_class(name, truth, survey)
+                rows.append([f"{kind}-exposed", what, f"{scores['mean']:.2f}",
+                             *[f"{value:.2f}" for form in ("shown", "gain") for value in scores[form].values()]])
+            photo = sorted(p.name for p in (survey / "images").glob("*.jpg"))[8]
+            view = lambda name: self.out / "view" / f"marsh_{kind}_{name}" / "held_out" / (Path(photo).stem + ".png")
+            self.panel(f"classes_{kind}.jpg", [survey / "images" / photo, view("none"), view("plain"), view("e0.4"), truth / photo], 320)
+            self.panel(f"targets_{kind}.jpg", [view(f"e{e}") for e in TARGETS], 266)
+        self.title("By class of surface")
+        self.table(head, rows)
+
     def mixed(self, name, first, second):
         """The first half of the flight from one survey, the second half from another with the same poses and other light."""
         folder = self.out / "sim" / name
@@ -253,7 +333,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-o", "--out", required=True, help="folder for surveys, runs, tables and pictures")
     parser.add_argument("--skyquilt", default=shutil.which("skyquilt") or "build/release/skyquilt", help="the program")
-    parser.add_argument("--study", choices=["exposure", "hidden", "light", "clouds", "all"], default="all")
+    parser.add_argument("--study", choices=["exposure", "hidden", "light", "clouds", "classes", "all"], default="all")
     parser.add_argument("--steps", type=int, default=600, help="training steps of every block; the context has half as many")
     parser.add_argument("--seeds", type=int, default=3, help="of the study clouds")
     parser.add_argument("--place", default="hamlet", help="of the study clouds")
@@ -264,7 +344,7 @@ def main():
     if not os.access(args.skyquilt, os.X_OK):
         sys.exit(f"brightness_study: {args.skyquilt} cannot be run: build it with scripts/demo.sh, or give --skyquilt")
     study = Study(args)
-    for name in ["exposure", "hidden", "light", "clouds"] if args.study == "all" else [args.study]:
+    for name in ["exposure", "hidden", "light", "clouds", "classes"] if args.study == "all" else [args.study]:
         getattr(study, name)()
     text = "\n".join(study.lines).strip() + "\n"
     (study.out / f"study_{args.study}.md").write_text(text)

@@ -14,9 +14,10 @@ SurfaceClass ClassOfGround(const GroundSample& ground) {
 
 }  // namespace
 
-SurfaceClass ClassOf(const Tag& tag, const Eigen::Vector3f& position, const CityLayout* city) {
+SurfaceClass ClassOf(const Tag& tag, const Eigen::Vector3f& position, const CityLayout* city, const SaltMarsh* marsh) {
   switch (tag.part) {
     case Part::kGround:
+      if (marsh != nullptr && marsh->Covers(position)) return SurfaceClass::kVegetation;
       return city == nullptr ? SurfaceClass::kGround : ClassOfGround(city->Sample(position.x(), position.y()));
     case Part::kWater:
       return SurfaceClass::kWater;

@@ -128,8 +128,8 @@ SurfaceImages PhotoRenderer::Surfaces(const geo::Rigid3d& cam_from_enu, const Mo
         const Vector3f direction(rays.dx[slot], rays.dy[slot], rays.dz[slot]);
         const Vector3f face = mesh.FaceNormal(triangle);
         const Vector3f normal = face.dot(direction) > 0.0F ? Vector3f(-face) : face;
-        const survey::SurfaceClass seen =
-            moves ? ClassOfMoving(mesh.tag[triangle]) : ClassOf(mesh.tag[triangle], origin + rays.t_far[slot] * direction, world_.city());
+        const survey::SurfaceClass seen = moves ? ClassOfMoving(mesh.tag[triangle])
+                                                : ClassOf(mesh.tag[triangle], origin + rays.t_far[slot] * direction, world_.city(), world_.marsh());
         *out.z_depth.At(x, y) = static_cast<float>(z_per_metre[slot] * static_cast<double>(rays.t_far[slot]));
         std::copy_n(normal.data(), 3, out.normals.At(x, y));
         *out.classes.At(x, y) = static_cast<uint8_t>(seen);

@@ -373,6 +373,8 @@ PlaceSpec ResolvePlace(const SimulateOptions& options) {
   place.cloud_shadows = {options.cloud_shadows, options.cloud_size_m, options.cloud_penumbra_m, options.cloud_speed_ms, options.cloud_cover};
   Overlay(options.sun_azimuth_deg, place.sun_azimuth_deg);
   Overlay(options.sun_elevation_deg, place.sun_elevation_deg);
+  if (options.marsh && place.landscape != Landscape::kTidalFlat) Refuse("marsh", "true", "only place 'tidalflat' has a marsh; set it to false");
+  place.marsh = options.marsh;
   CheckControlCrs(options);
   if (options.ortho_cell_m > 0.0 && place.flight != FlightKind::kSurvey) {
     Refuse("ortho_cell_m", Text(options.ortho_cell_m), "level photos make no orthophoto; set it to 0, or flight to survey");

@@ -82,6 +82,7 @@ struct PlaceSpec {
   double sun_elevation_deg = 48.0;
   double ambient_voxel_m = 3.0;
   CloudShadowSpec cloud_shadows;
+  bool marsh = false;       // plants and trees on a tidal flat
   double sky_clouds = 0.0;  // 0..1, contrast of the clouds; photos see them mirrored by wet surfaces
 };
 

@@ -24,6 +24,7 @@
 #include "simulate/flights/level_flight.h"
 #include "simulate/flights/panorama_flight.h"
 #include "simulate/flights/video_flight.h"
+#include "simulate/lights.h"
 #include "simulate/model_frame.h"
 #include "simulate/photo_renderer.h"
 #include "simulate/place_spec.h"
@@ -125,6 +126,18 @@ void CheckVideo(const SimulateOptions& options, const PlaceSpec& place) {
   }
 }
 
+void CheckLights(const SimulateOptions& options) {
+  if (options.lights == "one") return;
+  const char* const other = options.video_fps > 0        ? "video_fps"
+                            : options.panoramas > 0      ? "panoramas"
+                            : options.control_points > 0 ? "control_points"
+                            : options.check_points > 0   ? "check_points"
+                            : options.flight != "survey" ? "flight"
+                                                         : nullptr;
+  if (other == nullptr) return;
+  throw base::UsageError("simulate.lights = " + options.lights + " is for the photos of a survey alone: leave out simulate." + other);
+}
+
 // Films the flight of the photos.
 void FilmFlight(const SimulateOptions& options, const PlaceSpec& place, const std::vector<PhotoPlan>& photos, const World& world,
                 const PhotoRenderer& renderer, const geo::EnuFrame& frame, const fs::path& folder, base::ThreadPool& threads) {
@@ -182,6 +195,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   const auto begin = std::chrono::steady_clock::now();
   const PlaceSpec place = ResolvePlace(options);
   CheckVideo(options, place);
+  CheckLights(options);
   PrepareFolder(folder);
   const geo::EnuFrame frame({options.latitude_deg, geo::WrapLongitudeDeg(options.longitude_deg), options.height_m});
   base::LogInfo("simulate: building place {}", place.name);
@@ -189,6 +203,13 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   WarnAboutStreets(world, place);
   std::vector<PhotoPlan> photos = plan(place, world);
   ApplyTagFaults(place.tag_faults, place.seed, photos);
+  const std::vector<Light> lights = PlanLights(options, place);
+  RepeatUnder(lights, options.test_every, photos);
+  const size_t photos_per_light = photos.size() / lights.size();
+  for (const Light& light : lights) {
+    for (const char* part : {"images", "truth/depth", "truth/normals", "truth/classes", "truth/masks"})
+      fs::create_directories(folder / part / light.folder);
+  }
   std::optional<gis::MapGrid> ortho;
   if (options.ortho_cell_m > 0.0) ortho = PlanTrueOrthophoto(place, photos, world.TakeoffHeight(place), frame, options.ortho_cell_m);
   Targets targets = LayOutTargets(options, place, photos, frame, world, threads);
@@ -204,6 +225,10 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   for (size_t i = 0; i < photos.size(); ++i) {
     base::ThrowIfCancelled();
     const PhotoPlan& photo = photos[i];
+    if (lights.size() > 1 && i % photos_per_light == 0) {
+      const Light& light = lights[i / photos_per_light];
+      world.SetLight(light.sun_elevation_deg, light.intensity, threads);
+    }
     MovingScene moving = world.MovingAt(photo.time_s);
     const Rendering rendering = renderer.Render(photo.cam_from_enu, moving, threads, [&progress](double share) { progress.Advance(share); });
     const image::Image8 pixels = Develop(rendering.rgb_linear, {LightRgb(photo), place.vignetting, place.camera.PrincipalPoint()});
@@ -231,6 +256,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
     }
   }
   progress.Finish();
+  if (lights.size() > 1) world.SetLight(place.sun_elevation_deg, options.light_intensity, threads);
   if (options.video_fps > 0) FilmFlight(options, place, photos, world, renderer, frame, folder, threads);
   if (options.panoramas > 0) TakePanoramas(options, place, photos, world, frame, folder, threads);
   std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, place.camera, photos, seeds, place.seed, threads);

@@ -65,6 +65,11 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
       {"cloud_penumbra_m", &O::cloud_penumbra_m, Range{1, 500}, "width of the edges of these shadows on the ground, metres; real ones have 20 to 60"},
       {"cloud_speed_ms", &O::cloud_speed_ms, Range{0, 50}, "speed of these shadows in metres per second, in a direction from the seed"},
       {"cloud_cover", &O::cloud_cover, Range{0.05, 0.95}, "share of the ground that lies in these shadows"},
+      {"lights", &O::lights, Range::OneOf({"one", "sun", "intensity"}),
+       "one: all photos in the same light; sun: every photo again with the sun at 5, 10 ... 85 degrees above the horizon, in the folders sun_05 to "
+       "sun_85 of images/; intensity: every photo again in 1, 1.25 ... 3 times the light, in the folders light_1.00 to light_3.00. The flight is "
+       "cut to a multiple of test_every photos, so that every light has the same held-out places"},
+      {"lights_every", &O::lights_every, Range{1, 8}, "only the first of these lights and every n-th after it"},
       {"samples_per_pixel", &O::samples_per_pixel, Range::OneOf({1, 4, 16}), "rays per pixel"},
       {"soft_shadows", &O::soft_shadows, Range(), "spread the shadow rays over the sun's disc"},
       {"jpeg_quality", &O::jpeg_quality, Range{1, 100}, "quality of the JPEG files"},
@@ -88,6 +93,7 @@ std::vector<config::Field<SimulateOptions>> SimulateOptions::Fields() {
        "a bridge, which is no building: deck and ramps of a street, 5 to 6 m above a crossing in the middle of the place"},
       {"trucks", &O::trucks, Range{0, 100},
        "number of trucks and containers parked in the streets, 8 m long and 3.5 m high, as far as there is room; they are no buildings"},
+      {"marsh", &O::marsh, Range(), "tidalflat: plants of a salt marsh on the high sand, and trees; other places have none"},
       {"ortho_cell_m", &O::ortho_cell_m, Range{0.005, 10}.Or(0),
        "also write the true orthophoto, straight from above and without moving cars, with cells of this many metres; 0: none"},
       {"video_fps", &O::video_fps, Range{1, 60}.Or(0),

@@ -39,6 +39,8 @@ struct SimulateOptions {
   double sun_azimuth_deg = -1.0;      // clockwise from north, 0..360
   double sun_elevation_deg = -1.0;    // 5..90
   double light_intensity = 1.0;       // > 0, scales sun and sky
+  std::string lights = "one";         // one, sun or intensity: all photos again under several lights, see lights.h
+  int lights_every = 1;               // 1..8, only the first of these lights and every n-th after it
   // Drifting shadows of clouds; none by default. See cloud_shadows.h.
   double cloud_shadows = 0.0;             // 0..5 stops of the sun's light
   double cloud_size_m = 150.0;            // 10..5000
@@ -58,6 +60,7 @@ struct SimulateOptions {
   double tree_density = 1.0;              // 0..10, factor on the number of trees
   bool bridge = false;                    // over a crossing in the middle of the place
   int trucks = 0;                         // 0..100, parked trucks and containers
+  bool marsh = false;                     // tidalflat: plants on the high sand, and trees
   double ortho_cell_m = 0.0;              // 0 or 0.005..10, width of the cells of a true orthophoto; 0: none
   int video_fps = 0;                      // 0 or 1..60 frames per second of a video of the same flight; 0: none
   int panoramas = 0;                      // 0..10000 panoramas at places of the flight; 0: none

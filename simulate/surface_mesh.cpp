@@ -40,7 +40,7 @@ void WriteSurfaceMesh(const World& world, const std::filesystem::path& file) {
     const auto& corner = mesh.triangle[i];
     const Eigen::Vector3f middle = (mesh.position[corner[0]] + mesh.position[corner[1]] + mesh.position[corner[2]]) / 3.0F;
     const uint8_t n_corners = 3;
-    const auto class_id = static_cast<uint8_t>(ClassOf(mesh.tag[i], middle, world.city()));
+    const auto class_id = static_cast<uint8_t>(ClassOf(mesh.tag[i], middle, world.city(), world.marsh()));
     put(&n_corners, 1);
     put(corner.data(), 3 * sizeof(int32_t));
     put(&class_id, 1);

@@ -34,6 +34,11 @@ Json OptionsJson(SimulateOptions options) {
     json.erase("photos");
   }
   if (options.tags == "auto") json.erase("tags");
+  if (options.lights == "one") {
+    json.erase("lights");
+    json.erase("lights_every");
+  }
+  if (!options.marsh) json.erase("marsh");
   if (options.ortho_cell_m == 0.0) json.erase("ortho_cell_m");
   if (options.edge_targets == 0) json.erase("edge_targets");
   if (options.video_fps == 0) json.erase("video_fps");
@@ -135,15 +140,14 @@ void WriteModel(const std::filesystem::path& folder, const survey::ColmapModel& 
 }
 
 void WriteSurfaceTruth(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces) {
-  const std::string stem = std::filesystem::path(photo.name).stem().string();
-  const std::filesystem::path truth = folder / "truth";
-  image::SaveFloatTiff(surfaces.z_depth, truth / "depth" / (stem + ".tiff"));
-  image::SaveNormals(surfaces.normals, truth / "normals" / (stem + ".png"));
+  const std::filesystem::path truth = folder / "truth", name = photo.name;
+  image::SaveFloatTiff(surfaces.z_depth, truth / "depth" / std::filesystem::path(name).replace_extension(".tiff"));
+  image::SaveNormals(surfaces.normals, truth / "normals" / std::filesystem::path(name).replace_extension(".png"));
   WriteClasses(folder, photo, surfaces);
 }
 
 void WriteClasses(const std::filesystem::path& folder, const PhotoPlan& photo, const SurfaceImages& surfaces) {
-  image::SavePng(surfaces.classes, folder / "truth" / "classes" / (std::filesystem::path(photo.name).stem().string() + ".png"));
+  image::SavePng(surfaces.classes, folder / "truth" / "classes" / std::filesystem::path(photo.name).replace_extension(".png"));
 }
 
 void WriteExposureTruth(const std::filesystem::path& folder, const std::vector<PhotoPlan>& photos, const PlaceSpec& place) {

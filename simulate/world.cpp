@@ -19,7 +19,11 @@ World::World(const PlaceSpec& place, double light_intensity, base::ThreadPool& t
     : seed_(HashCell(static_cast<int>(place.seed), 0, 4711U)),
       hillside_rise_(HillsideRise(place.hillside_deg)),
       sky_(place.sun_azimuth_deg, place.sun_elevation_deg, light_intensity, place.sky_clouds, seed_ + 5U),
-      clouds_(place.cloud_shadows, sky_.sun_direction(), seed_ + 6U) {
+      sun_azimuth_deg_(place.sun_azimuth_deg),
+      sky_clouds_(place.sky_clouds),
+      ambient_voxel_m_(static_cast<float>(place.ambient_voxel_m)),
+      cloud_shadows_(place.cloud_shadows),
+      clouds_(cloud_shadows_, sky_.sun_direction(), seed_ + 6U) {
   const Eigen::Vector2d surround = Eigen::Vector2d::Constant(place.surround_m);
   if (place.landscape == Landscape::kCity) {
     BuildCity(place, place.area_min - surround, place.area_max + surround);
@@ -31,7 +35,13 @@ World::World(const PlaceSpec& place, double light_intensity, base::ThreadPool& t
     BuildTidalFlat(place, place.area_min - surround, place.area_max + surround);
   }
   scene_ = std::make_unique<raytrace::TracedScene>(mesh_.position, mesh_.triangle);
-  ambient_ = std::make_unique<AmbientVolume>(mesh_, *scene_, sky_, static_cast<float>(place.ambient_voxel_m), threads);
+  ambient_ = std::make_unique<AmbientVolume>(mesh_, *scene_, sky_, ambient_voxel_m_, threads);
+}
+
+void World::SetLight(double sun_elevation_deg, double light_intensity, base::ThreadPool& threads) {
+  sky_ = Sky(sun_azimuth_deg_, sun_elevation_deg, light_intensity, sky_clouds_, seed_ + 5U);
+  clouds_ = CloudShadows(cloud_shadows_, sky_.sun_direction(), seed_ + 6U);
+  ambient_ = std::make_unique<AmbientVolume>(mesh_, *scene_, sky_, ambient_voxel_m_, threads);
 }
 
 const std::vector<Building>& World::buildings() const {
@@ -167,6 +177,13 @@ void World::BuildTidalFlat(const PlaceSpec& place, const Eigen::Vector2d& ground
   sea.radii = 0.5 * (ground_max - ground_min) - margin;
   sea.level_z_m = channels_->water_z_m();
   AddWater(sea, 1.0, 0);
+  if (!place.marsh) return;
+  const auto ground_z = [this](const Eigen::Vector2d& at) {
+    return static_cast<double>(terrain_->Height(static_cast<float>(at.x()), static_cast<float>(at.y())));
+  };
+  marsh_ = std::make_unique<SaltMarsh>(place.area_min, place.area_max, ground_z, channels_->water_z_m(), seed_);
+  constexpr int kTreeDetail = 2;
+  for (size_t i = 0; i < marsh_->trees().size(); ++i) AddTree(marsh_->trees()[i], static_cast<uint32_t>(i), kTreeDetail, mesh_);
 }
 
 void World::AddWater(const Pond& pond, double reach, uint32_t object) {
@@ -219,6 +236,7 @@ Surface World::GroundAt(const Hit& hit) const {
   Surface surface = city_       ? CityGround(*city_, hit, seed_)
                     : channels_ ? TidalSand(hit, static_cast<float>(channels_->water_z_m()), seed_)
                                 : FarmGround(hit, seed_);
+  if (marsh_) surface = marsh_->Over(surface, hit);
   paint_.Apply(hit, surface);
   return surface;
 }
@@ -231,7 +249,7 @@ Surface World::SurfaceAt(const Hit& hit) const {
       return city_ ? PondWater(hit, seed_) : TidalWater(*terrain_, hit, seed_);
     case Part::kTrunk:
     case Part::kLeaves:
-      return TreeSurface(city_->contents().trees[hit.tag.object], hit);
+      return TreeSurface(marsh_ ? marsh_->trees()[hit.tag.object] : city_->contents().trees[hit.tag.object], hit);
     case Part::kCarBody:
     case Part::kCarGlass:
     case Part::kCarTyre:

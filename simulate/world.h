@@ -13,6 +13,7 @@
 #include "simulate/city_layout.h"
 #include "simulate/cloud_shadows.h"
 #include "simulate/place_spec.h"
+#include "simulate/salt_marsh.h"
 #include "simulate/sky.h"
 #include "simulate/surface.h"
 #include "simulate/target_paint.h"
@@ -39,7 +40,8 @@ class World {
   const Sky& sky() const { return sky_; }
   const AmbientVolume& ambient() const { return *ambient_; }
   const Terrain& terrain() const { return *terrain_; }
-  const CityLayout* city() const { return city_.get(); }  // null without a city
+  const CityLayout* city() const { return city_.get(); }   // null without a city
+  const SaltMarsh* marsh() const { return marsh_.get(); }  // null without one
   // Empty without a city.
   const std::vector<Building>& buildings() const;
 
@@ -48,6 +50,9 @@ class World {
 
   // Puts targets on the ground, in place of earlier ones. Not while other threads use this world.
   void PaintTargets(std::vector<PaintedTarget> targets) { paint_ = TargetPaint(std::move(targets)); }
+
+  // The same place in another light. Not while other threads use this world.
+  void SetLight(double sun_elevation_deg, double light_intensity, base::ThreadPool& threads);
 
   MovingScene MovingAt(double time_s) const;
   // Surface of the static scene at a hit; of what moves, given its MovingScene.
@@ -73,6 +78,7 @@ class World {
   Eigen::Vector2d hillside_rise_;
   std::unique_ptr<CityLayout> city_;
   std::unique_ptr<TidalChannels> channels_;  // of a tidal flat
+  std::unique_ptr<SaltMarsh> marsh_;
   std::unique_ptr<Terrain> terrain_;
   std::vector<MovingCar> moving_;
   std::vector<Walker> walkers_;
@@ -80,6 +86,9 @@ class World {
   Mesh mesh_;
   std::unique_ptr<raytrace::TracedScene> scene_;
   Sky sky_;
+  double sun_azimuth_deg_, sky_clouds_;
+  float ambient_voxel_m_;
+  CloudShadowSpec cloud_shadows_;
   CloudShadows clouds_;
   TargetPaint paint_;
   std::unique_ptr<AmbientVolume> ambient_;

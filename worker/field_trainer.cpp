@@ -44,8 +44,8 @@ std::optional<BinSampler> MakeSampler(const TrainOptions& options, const render:
 }  // namespace
 
 FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options,
-                           uint64_t seed, const LuminancePlan& luminance, brightness::ResponseLearner* learner, const FieldPriors& priors,
-                           base::ThreadPool& threads)
+                           AppearanceCodes codes, uint64_t seed, const LuminancePlan& luminance, brightness::ResponseLearner* learner,
+                           const FieldPriors& priors, base::ThreadPool& threads)
     : target_(target),
       options_(luminance.luminance.On() && luminance.luminance.product ? WithoutPyramid(options) : options),
       start_log_gain_(luminance.start.mean_log_gain),
@@ -57,7 +57,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       drawer_(target, source, seed, NeighboursOf(luminance.luminance), options.stratified, sampler(), threads, times_),
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
-      codes_(source.photos(), options.appearance_codes),
+      codes_(std::move(codes)),
       priors_(priors),
       source_(source),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / (sampler_ ? sampler_->LastBins() : 24))),

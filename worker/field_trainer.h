@@ -23,9 +23,10 @@ namespace skyquilt::worker {
 class FieldTrainer {
  public:
   // Trains target.parameters in place. They are allocated here and are zero until InitializeParameters() or LoadSession() sets them. context may be
-  // null. learner may be null: the photos' gains are then not learned.
-  FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options, uint64_t seed,
-               const LuminancePlan& luminance, brightness::ResponseLearner* learner, const FieldPriors& priors, base::ThreadPool& threads);
+  // null. learner may be null: the photos' gains are then not learned. codes: of the source's photos.
+  FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options,
+               AppearanceCodes codes, uint64_t seed, const LuminancePlan& luminance, brightness::ResponseLearner* learner, const FieldPriors& priors,
+               base::ThreadPool& threads);
 
   field::OptimizerState& state() { return state_; }
   int& rays_per_step() { return rays_per_step_; }

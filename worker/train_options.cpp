@@ -34,6 +34,9 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
        "agree; renderings and held-out photos show the mean look. Codes can hide differences of exposure that brightness.correction would measure; "
        "0: "
        "off"},
+      {"appearance_of", &O::appearance_of, Range::OneOf({"photo", "folder"}),
+       "photo: every photo has its own code; folder: photos of one folder share a code, such as those of one flight in one light; does nothing "
+       "without appearance_codes"},
       {"learning_rate", &O::learning_rate, Range{1e-6, 1}, "learning rate of Adam at the start"},
       {"final_learning_rate_share", &O::final_learning_rate_share, Range{1e-6, 1}, "learning rate at the end as a share of learning_rate"},
       {"sampler", &O::sampler, Range::OneOf({"occupancy", "proposal", "stratified"}),

@@ -26,8 +26,9 @@ struct TrainOptions {
   int density_hidden_layers = 1;
   std::string density_activation = "exp";  // exp, softplus or relu (core/field/density_activation.h)
   int color_hidden_layers = 1;
-  int sh_degree = 3;         // of the spherical harmonics of the viewing direction; 1: colour does not depend on it
-  int appearance_codes = 0;  // numbers of the code of every training photo (worker/step/appearance_codes.h); 0: off
+  int sh_degree = 3;                    // of the spherical harmonics of the viewing direction; 1: colour does not depend on it
+  int appearance_codes = 0;             // numbers of the code of every training photo (worker/step/appearance_codes.h); 0: off
+  std::string appearance_of = "photo";  // photo or folder: which photos share a code
 
   // Adam. The rate rises over the first 50 steps, then is constant, then falls geometrically.
   double learning_rate = 3e-2;             // highest rate

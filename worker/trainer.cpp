@@ -90,6 +90,10 @@ bool SearchesEverywhere(const TrainOptions& options) {
   return options.start == "everywhere";
 }
 
+AppearanceCodes CodesOf(const TrainJob& job) {
+  return {GroupPhotos(*job.survey, job.options.appearance_of), job.options.appearance_codes};
+}
+
 void RequireJob(const TrainJob& job) {
   SKYQUILT_CHECK(job.survey != nullptr && job.pixels != nullptr, "a job needs a survey and its pixels");
   SKYQUILT_CHECK(job.response.photos() == job.survey->photos.size() && job.pixels->size() == job.survey->photos.size(),
@@ -125,7 +129,7 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   source.UpdateExposures();
   render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active(), PriorOptions::Off());
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
-  FieldTrainer trainer(target, source, nullptr, job.options, job.seed, luminance, &learner, {}, threads);
+  FieldTrainer trainer(target, source, nullptr, job.options, CodesOf(job), job.seed, luminance, &learner, {}, threads);
   SessionRecord record;
   if (saved) {
     LoadSession(*saved, target, trainer, &record, &extras);
@@ -193,7 +197,8 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
   const DepthPoints points = prior_options.Points() ? DepthPoints(*job.survey, source, block.box) : DepthPoints();
   const PointPlanes planes = prior_options.Planes() ? PointPlanes(*job.survey, block.box, block.gsd_m) : PointPlanes();
   const FieldPriors priors{prior_options, segments ? &*segments : nullptr, &points, &planes, &job.survey->directions};
-  FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, job.seed, luminance, nullptr, priors, threads);
+  FieldTrainer trainer(target, source, context != nullptr ? &context->field : nullptr, job.options, CodesOf(job), job.seed, luminance, nullptr,
+                       priors, threads);
   SessionRecord record;
   if (saved) {
     LoadSession(*saved, target, trainer, &record, nullptr);

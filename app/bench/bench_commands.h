@@ -12,6 +12,7 @@ void AddBench(CLI::App& app, CommandState& state);
 // The subcommands that train whole surveys.
 void AddStudyBenches(CLI::App& bench, CommandState& state);
 // One of them, which they add themselves.
+void AddLightBench(CLI::App& bench, CommandState& state);
 void AddMethodsBench(CLI::App& bench, CommandState& state);
 void AddNumericsBench(CLI::App& bench, CommandState& state);
 void AddPosesBench(CLI::App& bench, CommandState& state);

@@ -285,6 +285,7 @@ void AddStudyBenches(CLI::App& bench, CommandState& state) {
                              "  skyquilt bench encodings -o out/bench\n"
                              "  skyquilt bench encodings --quick -o out/bench",
                    .run = RunEncodings});
+  AddLightBench(bench, state);
   AddMethodsBench(bench, state);
   AddStudyCommand(bench, state,
                   {.name = "tradeoff",

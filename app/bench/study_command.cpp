@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "app/settings/duration.h"
+#include "bench/study/data_set.h"
 #include "bench/study/study_tables.h"
 #include "core/base/errors.h"
 
@@ -22,6 +23,12 @@ bench::Study Begin(const CommandState& state, const StudyFlags& flags, const Stu
   std::vector<config::Override> own = flags.within.empty() ? kLean : std::vector<config::Override>();
   if (flags.quick) own.insert(own.end(), kQuick.begin(), kQuick.end());
   own.insert(own.end(), command.defaults.begin(), command.defaults.end());
+  if (!flags.data.empty()) {
+    const std::vector<config::Override> of_set = bench::FindDataSet(flags.data, flags.pictures).overrides;
+    own.insert(own.end(), of_set.begin(), of_set.end());
+    // The pictures as they are, and all that the split holds out.
+    own.insert(own.end(), {{"run.image_width", "0"}, {"brightness.correction", "none"}, {"evaluate.max_photos", "0"}});
+  }
   // --config and --set come last, so that the user's values win.
   coordinator::Settings settings;
   for (const config::Override& entry : own) settings.Set(entry);
@@ -32,6 +39,11 @@ bench::Study Begin(const CommandState& state, const StudyFlags& flags, const Stu
   // Variants are compared at one width.
   if (settings.run.image_width == coordinator::kAutoWidth && flags.within.empty()) settings.run.image_width = coordinator::kLeastAutoWidth;
   bench::StudySurvey survey{.folder = flags.survey, .place = flags.place, .model = flags.model};
+  if (!flags.data.empty()) {
+    const bench::DataSet set = bench::FindDataSet(flags.data, flags.pictures);
+    survey.folder = set.pictures;
+    survey.model = set.model;
+  }
   if (survey.folder.empty() && survey.place.empty()) survey.place = flags.quick ? "hamlet" : command.place;
   if (!survey.folder.empty() && !std::filesystem::is_directory(survey.folder)) {
     throw base::InputError(survey.folder, "no such folder", "Give the folder that holds the photos, or a project");

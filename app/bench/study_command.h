@@ -19,7 +19,8 @@ struct StudyFlags {
   std::vector<std::string> variants;   // of --priors, --variants and --methods; empty: all
   std::vector<std::string> within;     // of tradeoff: total times; empty: training times are studied
   std::vector<std::string> divisions;  // of blocks: rows x columns; empty: the study's own
-  int steps = 0;                       // of blocks: in place of the time; 0: by time
+  int steps = 0;                       // of blocks, of light and of methods with a data set, in place of the time; 0: by time
+  std::string data, pictures;          // of methods: a published data set, and its folder of pictures
   std::string shapes;                  // empty: the settings' own
   std::vector<double> overlaps;        // of methods; empty: the settings' own
   std::vector<double> altitudes;       // of methods; empty: the settings' own

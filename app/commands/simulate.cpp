@@ -24,6 +24,8 @@ void AddSimulate(CLI::App& app, CommandState& state) {
   AddOptionFlag(*command, overrides, "--image-width", "simulate.image_width", "width of the photos in pixels");
   AddOptionFlag(*command, overrides, "--altitudes", "simulate.altitudes",
                 "flying height above ground in metres: one, or one per block, separated by commas");
+  AddOptionFlag(*command, overrides, "--lights", "simulate.lights",
+                "take every photo again under several heights of the sun, or intensities of light");
   command->add_flag_callback(
       "--video",
       [overrides] {

@@ -146,6 +146,7 @@ std::string Study::Identity(const Variant& variant, const coordinator::Settings&
   if (std::filesystem::exists(masks)) identity.append(" ").append(coordinator::FileIdentity(masks));
   for (const std::string& prefix : variant.photo_prefixes) identity.append(" ").append(prefix);
   if (scales_) identity.append(" ").append(scales_->Identity());
+  if (lights_) identity.append(" ").append(lights_->Identity());
   if (views_ > 0) identity.append(" views ").append(std::to_string(views_));
   if (variant.max_tilt_deg < 180.0) identity.append(" tilt ").append(std::to_string(variant.max_tilt_deg));
   if (buildings_) identity.append(" buildings");
@@ -220,6 +221,7 @@ VariantResult Study::Measure(const Variant& variant, const coordinator::Settings
     const evaluate::metrics::Metrics metrics = Train(variant, settings, merge_anew, training);
     result = Collect(variant, variant, *training, metrics);
     AddFromScene(variant, settings, &result);
+    if (lights_) AddLights(variant, settings, &result);
   } catch (const base::BlockError& error) {
     result.failure = error.what();
   }
@@ -301,6 +303,7 @@ VariantResult Study::Collect(const Variant& trained, const Variant& scored, cons
   r.flip = known(metrics.flip);
   r.lpips = known(metrics.lpips);
   r.psnr_full_db = known(metrics.psnr_full_frame);
+  r.ssim_full = known(metrics.ssim_full_frame);
   r.coverage = known(metrics.coverage);
   r.seam_gap_db = known(metrics.seam_psnr_gap_db);
   r.depth_rmse_m = known(metrics.depth_rmse_m);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bench/study/edited_survey.h"
+#include "bench/study/light_scores.h"
 #include "bench/study/scale_scores.h"
 #include "coordinator/project/settings.h"
 #include "coordinator/stages/pipeline.h"
@@ -69,7 +70,7 @@ struct VariantResult {
   std::string failure;            // empty when it has results
   double psnr_db = kNone;         // over its own covered pixels
   double psnr_common_db = kNone;  // over those that all variants cover that it is compared with (common_pixels.h); never in its saved result
-  double ssim = kNone, flip = kNone, lpips = kNone, psnr_full_db = kNone, coverage = kNone, seam_gap_db = kNone;
+  double ssim = kNone, flip = kNone, lpips = kNone, psnr_full_db = kNone, ssim_full = kNone, coverage = kNone, seam_gap_db = kNone;
   double depth_rmse_m = kNone, depth_median_abs_m = kNone, floater_opacity = kNone;  // simulated surveys
   double kept_median_gsd = kNone, kept_nmad_gsd = kNone;  // against sparse points kept from training, evaluate::photos::KeptPointErrors
   double train_seconds = kNone, samples_per_second = kNone, samples = kNone, peak_rss_bytes = kNone;
@@ -84,6 +85,8 @@ struct VariantResult {
   std::string report;                                            // its report, relative to FOLDER
   std::vector<ScaleScore> scales;                                // when the study measures them
   std::string scale_pictures;                                    // folder of their pictures, relative to FOLDER; may be empty
+  std::vector<LightScore> lights;                                // when the study measures them
+  std::string light_pictures;                                    // folder of their pictures, relative to FOLDER; may be empty
   std::vector<evaluate::metrics::ClassScore> classes;            // simulated surveys with true classes
   double flat_roof_rms_m = kNone, flat_roof_nmad_m = kNone;      // the same; evaluate::photos::FlatRoofScore
   std::string views;                                             // folder of the pictures that WriteViews makes, relative to FOLDER; may be empty
@@ -115,6 +118,8 @@ class Study {
   const std::string& place() const { return options_.survey.place; }  // that is simulated; empty: none
   // Every variant that is run from now on is also scored at several scales.
   void MeasureScales(ScaleOptions options) { scales_ = std::move(options); }
+  // Every variant that is run from now on is also scored under each of several lights; its photo_prefixes say which of them it is trained with.
+  void MeasureLights(LightOptions options) { lights_ = std::move(options); }
   // Every variant that is run from now on leaves pictures of so many held-out photos, as its scene may be removed (scene_views.h).
   void KeepViews(int photos) { views_ = photos; }
   // Every variant that is trained from now on also gets surface and buildings.
@@ -160,6 +165,8 @@ class Study {
                         const evaluate::metrics::Metrics& metrics) const;
   // What is asked for beside the report: scores at several scales, pictures.
   void AddFromScene(const Variant& variant, const coordinator::Settings& settings, VariantResult* result) const;
+  // Merges once for every look that stands for a light.
+  void AddLights(const Variant& variant, const coordinator::Settings& settings, VariantResult* result) const;
   std::optional<VariantResult> Load(const Variant& variant, const std::string& identity) const;
 
   comm::Communicator& comm_;
@@ -167,6 +174,7 @@ class Study {
   std::filesystem::path source_;  // project that holds the survey
   survey::Survey survey_;
   std::optional<ScaleOptions> scales_;
+  std::optional<LightOptions> lights_;
   int views_ = 0;
   bool buildings_ = false;
   std::vector<int> seeds_;  // empty: that of the settings

@@ -106,6 +106,26 @@ std::vector<config::Override> FirstSurvey(const std::vector<double>& overlaps, c
 // its orders with those of MatrixCity (Li et al. 2023), supplement, table 2. Writes methods.png into the study's folder.
 StudyBench MethodsBench(Study& study, const MethodsOptions& options);
 
+struct DataSetOptions {
+  std::vector<StudiedPreset> methods;  // without their budgets, at least one
+  std::string data_set;                // its name, for the page
+  double budget_s = 300.0;             // training time of every method, context included; 0: the settings' steps
+  std::vector<int> seeds;              // of training, each once; empty: that of the settings
+};
+// Methods, each as one field, on a data set with a split of its own, scored over whole frames as published figures are.
+StudyBench DataSetBench(Study& study, const DataSetOptions& options);
+
+struct LightBenchOptions {
+  double budget_s = 60.0;  // training time of every variant; 0: the settings' steps
+};
+// The changes to the settings for photos of one place under lights of several elevations.
+std::vector<config::Override> SunLights();
+// Photos of one simulated place under several elevations of the sun, and under several intensities: trains codes of every second light, mixes those
+// of neighbours for the light between, and compares with photos of that light and with trainings of all lights; intensities also with what the
+// brightness correction finds without codes. The second set is in FOLDER/intensity. Writes light.png into the study's folder. Source of the question:
+// MatrixCity (Li et al. 2023), supplement, section 4.1.
+StudyBench LightBench(Study& study, const LightBenchOptions& options);
+
 struct StudiedPrior {
   std::string name;     // of its weight in section [priors]
   double weight = 0.0;  // with which it is studied

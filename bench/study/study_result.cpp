@@ -16,6 +16,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Calls `each` for every member of a LightScore that is a measured number, with its JSON key.
+template <typename Score, typename Each>
+void EachLightNumber(Score& score, const Each& each) {
+  each("psnr_db", score.psnr_db);
+  each("ssim", score.ssim);
+  each("stops", score.stops);
+  each("moved_share", score.moved_share);
+  each("moved_psnr_db", score.moved_psnr_db);
+  each("followed", score.followed);
+}
+
 // Calls `each` for every member that is a single number, with its JSON key.
 template <typename Result, typename Each>
 void EachNumber(Result& r, const Each& each) {
@@ -25,6 +36,7 @@ void EachNumber(Result& r, const Each& each) {
   each("flip", r.flip);
   each("lpips", r.lpips);
   each("psnr_full_db", r.psnr_full_db);
+  each("ssim_full", r.ssim_full);
   each("coverage", r.coverage);
   each("seam_gap_db", r.seam_gap_db);
   each("depth_rmse_m", r.depth_rmse_m);
@@ -88,6 +100,12 @@ std::string ResultJson(const VariantResult& result, const std::string& identity)
                               {"frame_seconds", base::NumberOrNull(score.frame_seconds)}});
   }
   json["scale_pictures"] = result.scale_pictures;
+  for (const LightScore& score : result.lights) {
+    Json entry = {{"light", score.light}, {"look", score.look}, {"photos", score.photos}};
+    EachLightNumber(score, [&](const char* key, double value) { entry[key] = base::NumberOrNull(value); });
+    json["lights"].push_back(std::move(entry));
+  }
+  if (!result.light_pictures.empty()) json["light_pictures"] = result.light_pictures;
   json["classes"] = ToJson(std::span<const evaluate::metrics::ClassScore>(result.classes));
   json["views"] = result.views;
   if (result.buildings) json["buildings"] = ToJson(*result.buildings);
@@ -140,6 +158,13 @@ VariantResult ParseResult(const std::string& text, std::string* identity) {
                              .frame_seconds = base::NanIfNull(score.at("frame_seconds"))});
   }
   result.scale_pictures = json.value("scale_pictures", "");
+  for (const Json& entry : json.value("lights", Json::array())) {
+    LightScore score{
+        .light = entry.at("light").get<std::string>(), .look = entry.at("look").get<std::string>(), .photos = entry.at("photos").get<int>()};
+    EachLightNumber(score, [&](const char* key, double& value) { value = base::NanIfNull(entry.at(key)); });
+    result.lights.push_back(std::move(score));
+  }
+  result.light_pictures = json.value("light_pictures", "");
   result.classes = evaluate::metrics::ClassScoresFromJson(json.value("classes", Json()));
   result.views = json.value("views", "");
   if (json.contains("buildings")) result.buildings = evaluate::buildings::BuildingScoresFromJson(json.at("buildings"));

@@ -60,6 +60,7 @@ std::string MergeBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
                           .height_reference = blocks.height_reference,
                           .borders = pipeline.settings.merge.Borders(),
                           .storage = pipeline.settings.merge.Storage(),
+                          .look = merge::ParseLook(pipeline.settings.merge.look),
                           .use_context = pipeline.settings.train.coupling != "independent",
                           .config_toml = pipeline.settings.Toml(),
                           .config_hash = train ? train->Hash() : "",

@@ -37,6 +37,9 @@ std::vector<config::Field<BrightnessOptions>> BrightnessOptions::Fields() {
       {"target_brightness", &O::target_brightness, Range{0.1, 0.9}, "mean display value of the rendering that luminance brightens or darkens"},
       {"luminance_form", &O::luminance_form, Range::OneOf({"gain", "product"}),
        "gain: the concealing factor of a sample dims this sample only; product: the factors multiply along the ray (tidal-flat paper, eq. 13)"},
+      {"luminance_loss", &O::luminance_loss, Range::OneOf({"toned", "plain"}),
+       "toned: the concealing field compares photos after a curve that spreads dark and bright values (tidal-flat paper, eq. 14); plain: display "
+       "values as they are, for comparison"},
       {"luminance_neighbours", &O::luminance_neighbours, Range::OneOf({"patch", "batch"}),
        "pixels that the convolution of the concealing field runs over: patch (neighbouring pixels) or batch (unrelated pixels, as in published "
        "code)"},

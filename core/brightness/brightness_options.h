@@ -17,6 +17,7 @@ struct BrightnessOptions {
   std::string luminance_mode = "auto";         // under, over, or auto: decided from the photos
   double target_brightness = 0.4;              // mean display value of the rendering shown to people
   std::string luminance_form = "gain";         // gain: Omega dims its own sample only; product: the Omegas multiply along the ray
+  std::string luminance_loss = "toned";        // toned: photos are compared after the inverse tone curve (tone_curve.h); plain: as they are
   std::string luminance_neighbours = "patch";  // pixels that the convolution runs over: patch (neighbouring) or batch (unrelated)
 
   static std::vector<config::Field<BrightnessOptions>> Fields();

@@ -25,6 +25,7 @@ Luminance PlanLuminance(const BrightnessOptions& options, const BrightnessStatis
   Luminance luminance;
   luminance.mode = ModeOf(options, statistics);
   luminance.product = options.luminance_form == "product";
+  luminance.toned = options.luminance_loss == "toned";
   luminance.patches = options.luminance_neighbours == "patch";
   luminance.target = options.target_brightness;
   const double wanted = static_cast<double>(image::LinearFromSrgb(static_cast<float>(options.target_brightness)));
@@ -38,6 +39,7 @@ void PutLuminance(const Luminance& luminance, const LuminanceState& state, check
   writer.SetAttribute("luminance_mode", static_cast<int>(luminance.mode));
   writer.SetAttribute("luminance_product", luminance.product ? 1 : 0);
   writer.SetAttribute("luminance_patches", luminance.patches ? 1 : 0);
+  if (!luminance.toned) writer.SetAttribute("luminance_plain_loss", 1);
   writer.SetAttribute("luminance_target", luminance.target);
   writer.SetAttribute("luminance_start", luminance.start_log_gain);
   writer.SetAttribute("luminance_mean_shown", state.mean_shown);
@@ -52,6 +54,7 @@ void GetLuminance(const checkpoint::ArchiveReader& reader, Luminance* luminance,
   luminance->mode = mode == 1 ? LuminanceMode::kUnder : mode == 2 ? LuminanceMode::kOver : LuminanceMode::kNone;
   luminance->product = reader.IntAttribute("luminance_product") != 0;
   luminance->patches = reader.IntAttribute("luminance_patches") != 0;
+  luminance->toned = !reader.HasAttribute("luminance_plain_loss");
   luminance->target = reader.DoubleAttribute("luminance_target");
   luminance->start_log_gain = reader.DoubleAttribute("luminance_start");
   state->mean_shown = reader.DoubleAttribute("luminance_mean_shown");

@@ -19,6 +19,7 @@ enum class LuminanceMode { kNone, kUnder, kOver };
 struct Luminance {
   LuminanceMode mode = LuminanceMode::kNone;
   bool product = false;         // true: the Omegas multiply along the ray (eq. 13); false: each Omega dims its own sample only
+  bool toned = true;            // photos are compared after the inverse tone curve (tone_curve.h); false: as they are
   bool patches = true;          // true: the convolution runs over neighbouring pixels; false: over unrelated pixels
   double target = 0.4;          // mean display value of the rendering shown to people, 0..1
   double start_log_gain = 0.0;  // natural logarithm of the Omega that relates the photos' mean to the target, < 0

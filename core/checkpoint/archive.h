@@ -35,6 +35,7 @@ class ArchiveWriter {
   // The writer takes over these values.
   void PutOwned(const std::string& name, std::vector<uint8_t> values);
   void PutOwned(const std::string& name, std::vector<int64_t> values);
+  void PutOwned(const std::string& name, std::vector<float> values);
   // Copies an array of another archive. It is read only while it is written, so that merged archives need not fit in memory; the other file must not
   // change until Commit. Fastest when sorting the names keeps each file's arrays together. precision: for floats; other arrays keep their type.
   // Throws base::InputError as ArchiveReader does.

@@ -172,7 +172,7 @@ struct ArchiveWriter::Impl {
   std::map<std::string, Array> arrays;
   std::map<std::string, Attribute> attributes;
   mutable Copies copies;
-  std::list<std::variant<std::vector<uint8_t>, std::vector<int64_t>>> owned;
+  std::list<std::variant<std::vector<uint8_t>, std::vector<int64_t>, std::vector<float>>> owned;
 
   void Put(const std::string& name, ElementType type, const void* data, size_t n, const std::vector<int64_t>& shape) {
     SKYQUILT_CHECK(!name.empty() && name.front() != '/' && name.back() != '/' && name.find("//") == std::string::npos, "array name '" + name + "'");
@@ -277,6 +277,9 @@ void ArchiveWriter::PutOwned(const std::string& name, std::vector<uint8_t> value
 }
 void ArchiveWriter::PutOwned(const std::string& name, std::vector<int64_t> values) {
   Put(name, std::get<std::vector<int64_t>>(impl_->owned.emplace_back(std::move(values))));
+}
+void ArchiveWriter::PutOwned(const std::string& name, std::vector<float> values) {
+  Put(name, std::get<std::vector<float>>(impl_->owned.emplace_back(std::move(values))));
 }
 void ArchiveWriter::PutCopy(const std::string& name, const std::filesystem::path& file, const std::string& array, Precision precision) {
   const ArchiveReader& reader = impl_->copies.Reader(file);

@@ -136,6 +136,20 @@ void HashField::EncodeAppearance(const float* code, int64_t count, float* rows, 
   for (size_t k = 0; k < static_cast<size_t>(config_.appearance); ++k) std::fill_n(rows + (first + k) * stride, count, code[k]);
 }
 
+void HashField::FoldAppearance(std::span<const float> code, std::span<float> networks) const {
+  Require(code.size() == static_cast<size_t>(config_.appearance), "a code must have as many numbers as the field's");
+  Require(static_cast<int64_t>(networks.size()) == NetworkParameters(), "the network parameters disagree with the configuration");
+  float sh[16] = {};
+  encoding::SphericalHarmonics(0.0F, 0.0F, 1.0F, config_.sh_degree, sh);
+  const auto [outputs, inputs] = layers_[ColorInput()];
+  for (int o = 0; o < outputs; ++o) {
+    float* row = networks.data() + network_offsets_[ColorInput()] + static_cast<ptrdiff_t>(o) * inputs;
+    double sum = 0.0;
+    for (size_t k = 0; k < code.size(); ++k) sum += static_cast<double>(row[static_cast<size_t>(AppearanceRow()) + k]) * static_cast<double>(code[k]);
+    row[kGeometryRows] += static_cast<float>(sum / static_cast<double>(sh[0]));
+  }
+}
+
 void HashField::Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
                       float* color_raw, size_t color_stride) const {
   const float* in = color_in;

@@ -158,6 +158,9 @@ class HashField {
   void EncodeDirection(const float direction[3], int64_t count, float* rows, size_t stride) const;
   // After EncodeDirection, whose arguments `rows`, `count` and `stride` are: replaces these zeros by a code of config().appearance numbers.
   void EncodeAppearance(const float* code, int64_t count, float* rows, size_t stride) const;
+  // Changes the network parameters so that colours are those with this code where no code is given: the first spherical harmonic is constant, so its
+  // weights can take what the code adds to the first layer of the colour network. networks: NetworkParameters(); code: config().appearance numbers.
+  void FoldAppearance(std::span<const float> code, std::span<float> networks) const;
   // Colour network. color_in: ColorInputRows() rows, geometry first. hidden: one buffer of config().hidden rows per hidden layer.
   void Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
              float* color_raw, size_t color_stride) const;

@@ -134,7 +134,7 @@ void PutField(const render::TrainedField& f, const std::string& prefix, checkpoi
 }
 
 void PutSceneField(const render::TrainedField& description, const std::filesystem::path& checkpoint, const std::string& prefix,
-                   checkpoint::ArchiveWriter& writer, checkpoint::Precision tables) {
+                   checkpoint::ArchiveWriter& writer, checkpoint::Precision tables, std::span<const float> code) {
   PutDescription(description, prefix, writer);
   const checkpoint::ArchiveReader reader(checkpoint);
   const std::vector<int64_t> size = StoredSize(reader, "");
@@ -155,7 +155,17 @@ void PutSceneField(const render::TrainedField& description, const std::filesyste
   } else {
     writer.PutCopy(prefix + "grid", checkpoint, "grid", tables);
   }
-  writer.PutCopy(prefix + "networks", checkpoint, "networks");
+  if (code.empty()) {
+    writer.PutCopy(prefix + "networks", checkpoint, "networks");
+  } else {
+    std::vector<float> networks = reader.Floats("networks");
+    const field::HashField shape(description.config);
+    if (static_cast<int64_t>(networks.size()) != shape.NetworkParameters()) {
+      throw base::InputError(checkpoint, "the size of its networks disagrees with its configuration", kFix);
+    }
+    shape.FoldAppearance(code, networks);
+    writer.PutOwned(prefix + "networks", std::move(networks));
+  }
   // Rendering only needs to know whether a cell is occupied.
   writer.PutOwned(prefix + "occupied_bits", PackBits(occupancy.occupied));
   writer.PutOwned(prefix + "occupancy_size", size);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "core/checkpoint/archive.h"
@@ -18,8 +19,10 @@ void PutField(const render::TrainedField& field, const std::string& prefix, chec
 // Writes what rendering needs of a field, for scenes. Tables and networks are copied from the field's checkpoint at Commit: the tables with this
 // precision and, of hash grids with one position per sample, without the entries that no occupied cell reads (field/used_entries.h); of the occupancy
 // only one bit per cell. Throws base::InputError when the sizes of the checkpoint's arrays do not fit together.
+// code: that the scene shows, folded into the networks (field::HashField::FoldAppearance); empty: the mean look.
 void PutSceneField(const render::TrainedField& description, const std::filesystem::path& checkpoint, const std::string& prefix,
-                   checkpoint::ArchiveWriter& writer, checkpoint::Precision tables = checkpoint::Precision::kFloat32);
+                   checkpoint::ArchiveWriter& writer, checkpoint::Precision tables = checkpoint::Precision::kFloat32,
+                   std::span<const float> code = {});
 // Writes box, configuration and training record of a field, without its arrays.
 void PutDescription(const render::TrainedField& field, const std::string& prefix, checkpoint::ArchiveWriter& writer);
 // Reads them. Throws base::InputError for impossible values.

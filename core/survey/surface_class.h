@@ -16,13 +16,14 @@ enum class SurfaceClass : uint8_t {
   kParkedCar = 6,  // part of the static scene; trucks and containers too
   kMovingCar = 7,  // at another place in every photo
   kWater = 8,
-  kPerson = 9,  // at another place in every photo
-  kLamp = 10    // street lamps: posts, arms and heads
+  kPerson = 9,      // at another place in every photo
+  kLamp = 10,       // street lamps: posts, arms and heads
+  kVegetation = 11  // low plants of a salt marsh
 };
-inline constexpr int kSurfaceClasses = 11;
+inline constexpr int kSurfaceClasses = 12;
 
 // Name of a class by its number.
 inline constexpr std::array<const char*, kSurfaceClasses> kSurfaceClassNames = {"none",       "roof",       "wall",  "ground", "road", "tree",
-                                                                                "parked car", "moving car", "water", "person", "lamp"};
+                                                                                "parked car", "moving car", "water", "person", "lamp", "vegetation"};
 
 }  // namespace skyquilt::survey

@@ -10,7 +10,7 @@
 namespace skyquilt::bench {
 namespace {
 
-constexpr int kWidth = 400, kHeight = 300;
+constexpr int kPhotoWidth = 400, kPhotoHeight = 300;
 
 class MethodPictures : public InTemporaryFolder {
  protected:
@@ -21,8 +21,8 @@ class MethodPictures : public InTemporaryFolder {
     const std::filesystem::path views = folder_.path() / result.views;
     base::RequireWritableFolder(views);
     for (int view = 0; view < 2; ++view) {
-      image::SavePng(image::Image8(kWidth, kHeight, 3, static_cast<uint8_t>(100 + view)), views / ViewPicture(view, "photo"));
-      image::SavePng(image::Image8(kWidth, kHeight, 3, render), views / ViewPicture(view, "render"));
+      image::SavePng(image::Image8(kPhotoWidth, kPhotoHeight, 3, static_cast<uint8_t>(100 + view)), views / ViewPicture(view, "photo"));
+      image::SavePng(image::Image8(kPhotoWidth, kPhotoHeight, 3, render), views / ViewPicture(view, "render"));
     }
     return result;
   }
@@ -45,7 +45,7 @@ TEST_F(MethodPictures, ShowTheSamePartsOfAllMethods) {
 
 TEST_F(MethodPictures, ShowRoofsAndTreesWhereClassesAreKnown) {
   const MethodPair pair{.name = "dvgo", .one = With("dvgo_one", 20), .blocks = With("dvgo_blocks", 30)};
-  image::Image8 classes(kWidth, kHeight, 1, static_cast<uint8_t>(survey::SurfaceClass::kGround));
+  image::Image8 classes(kPhotoWidth, kPhotoHeight, 1, static_cast<uint8_t>(survey::SurfaceClass::kGround));
   for (int y = 0; y < 20; ++y) {
     for (int x = 0; x < 20; ++x) *classes.At(x, y) = static_cast<uint8_t>(survey::SurfaceClass::kRoof);
   }

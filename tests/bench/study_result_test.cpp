@@ -37,6 +37,9 @@ VariantResult Example() {
   r.scale_pictures = "runs/guided/scales";
   r.classes = {{.name = "roof", .pixels = 1200, .missing_pixels = 7, .depth_bias_m = -0.25, .depth_nmad_m = 0.125, .normal_median_deg = 4.5},
                {.name = "tree"}};
+  r.lights = {{.light = "sun_10", .look = kBetweenLook, .photos = 3, .psnr_db = 24.5, .stops = 0.25, .followed = 0.125},
+              {.light = "sun_05", .look = kOwnLook}};
+  r.light_pictures = "runs/guided/lights";
   r.flat_roof_rms_m = 0.0625;
   r.flat_roof_nmad_m = 0.03125;
   r.views = "runs/guided/views";
@@ -99,6 +102,15 @@ TEST(ResultJson, ReadsBackUnchanged) {
   EXPECT_EQ(back.scales[0].frame_seconds, 0.08);
   EXPECT_TRUE(std::isnan(back.scales[1].psnr_db));
   EXPECT_EQ(back.scale_pictures, "runs/guided/scales");
+  ASSERT_EQ(back.lights.size(), 2U);
+  EXPECT_EQ(back.lights[0].light, "sun_10");
+  EXPECT_EQ(back.lights[0].look, kBetweenLook);
+  EXPECT_EQ(back.lights[0].photos, 3);
+  EXPECT_EQ(back.lights[0].psnr_db, 24.5);
+  EXPECT_EQ(back.lights[0].stops, 0.25);
+  EXPECT_EQ(back.lights[0].followed, 0.125);
+  EXPECT_TRUE(std::isnan(back.lights[1].moved_psnr_db));
+  EXPECT_EQ(back.light_pictures, "runs/guided/lights");
   ASSERT_EQ(back.classes.size(), 2U);
   EXPECT_EQ(back.classes[0].name, "roof");
   EXPECT_EQ(back.classes[0].pixels, 1200);

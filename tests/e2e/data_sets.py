@@ -116,6 +116,16 @@ def trains_blenders_form(skyquilt, hamlet, folder):
     expect(published["psnr"] == metrics["psnr_full_frame"] and published["psnr"] > 16.0, f"PSNR is {published['psnr']}")
     expect(published["ssim"] == metrics["ssim_full_frame"] and published["ssim"] > 0.3, f"SSIM is {published['ssim']}")
     expect("sigma 1.5" in published["ssim_variant"] and "not measured" in published["lpips_variant"], f"variants are not named: {published}")
+    bench = folder / "bench"
+    words = ["bench", "methods", "--data", data, "-o", bench, "--methods", "skyquilt", "--steps", "60", "--set", "partition.max_log2_table_size=14"]
+    skyquilt.call(*words, "--place", "hamlet", status=2, says="has its own pictures, poses and split")
+    skyquilt.call("bench", "methods", "--data", folder / "modules", "-o", bench, status=3, says="no such folder")
+    skyquilt.call(*words, says=["Methods on Blender", "skyquilt"])
+    result = json.loads((bench / "methods.json").read_text())["results"][0]
+    rows = (bench / "methods.csv").read_text().splitlines()
+    expect(len(rows) == 2 and float(rows[1].split(",")[1]) == result["psnr_full_db"] > 12.0, f"the rows are {rows}")
+    expect((result["blocks"], result["training_photos"]) == (1, len(hamlet.names) - len(tested)), f"trained otherwise: {result}")
+    expect(result["ssim_full"] is not None, result)
     # A picture less is another row than the published one.
     (data / tested[0]).unlink()
     skyquilt.call("prepare", data, "--model", data, "-o", folder / "fewer", status=3,

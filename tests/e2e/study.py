@@ -150,6 +150,32 @@ def test(skyquilt, folder):
     for variant in result["results"]:
         expect((out / variant["report"]).is_file(), variant["report"])
 
+    # Light: every second light is trained, and what was done is not done again.
+    out = folder / "light"
+    words = ["bench", "light", "-o", out, "--quick", "--steps", "20", "--set", "simulate.image_width=80", "--set", "run.image_width=80", "--set",
+             "partition.max_log2_table_size=14", "--set", "train.batch_samples=4096", "--set", "context.batch_samples=4096"]
+    skyquilt.call(*words, "--survey", survey, status=2, says="--place")
+    skyquilt.call(*words, says="Lights between the trained ones")
+    result = check_page(out, "light")
+    names = ["every_second", "all_lights", "no_codes"]
+    expect([variant["name"] for variant in result["results"]] == names + ["intensity_" + name for name in names + ["corrected"]], result["results"])
+    looks = {variant["name"]: [(score["light"], score["look"]) for score in variant["lights"]] for variant in result["results"]}
+    suns, intensities = [f"sun_{deg:02}" for deg in (5, 25, 45, 65, 85)], ["light_1.00", "light_2.00", "light_3.00"]
+    expect(looks["all_lights"] == [(light, "own") for light in suns] and looks["no_codes"] == [(light, "none") for light in suns], looks)
+    expect(looks["intensity_corrected"] == [(light, "none") for light in intensities], looks)
+    expect(sorted(looks["intensity_every_second"]) == [("light_1.00", "own"), ("light_2.00", "between"), ("light_2.00", "lower"), ("light_2.00", "upper"),
+                                                       ("light_3.00", "own")], looks)
+    counts = [variant["training_photos"] for variant in result["results"]]
+    expect(counts[0] * 5 == counts[1] * 3 and counts[3] * 3 == counts[4] * 2, f"trained with other shares of the lights: {counts}")
+    for variant in result["results"]:
+        expect(all(score["photos"] == 3 and score["psnr_db"] > 5.0 for score in variant["lights"]), variant["lights"])
+    stops = [score["stops"] for score in result["results"][-1]["lights"]]
+    expect(stops[0] < stops[1] < stops[2], f"the correction found {stops} stops")
+    expect((out / "light.png").is_file() and len((out / "light_sun.csv").read_text().splitlines()) == 6, "no picture or another table")
+    before = digest(out / "runs")
+    skyquilt.call(*words)
+    expect(digest(out / "runs") == before, "a finished variant was run again")
+
     # Priors: every seed has a place of its own, and the pictures remain when the scenes are removed.
     out = folder / "priors"
     words = ["bench", "priors", "-o", out, "--priors", "all", "--seeds", "5,6", *SMALL, "--set", "simulate.image_width=160"]

@@ -148,6 +148,8 @@ TEST(Presets, BadOptionsAreRefusedByName) {
     o.place = "solar_farm";
     o.lamps = 2;
   });
+  ExpectRefused("marsh", [](SimulateOptions& o) { o.marsh = true; });
+  ExpectRefused("lights", [](SimulateOptions& o) { o.lights = "moon"; });
   ExpectRefused("class_images", [](SimulateOptions& o) { o.class_images = "some"; });
 }
 

@@ -87,7 +87,7 @@ TEST_F(HamletSurvey, LayoutIsComplete) {
   EXPECT_EQ(summary["city_yaw_deg"], ResolvePlace(Hamlet()).city.yaw_deg);
   ASSERT_EQ(summary["district_yaw_deg"].size(), 2U);
   // As before there were other flights.
-  for (const char* key : {"flight", "photos", "tags"}) EXPECT_FALSE(summary["options"].contains(key)) << key;
+  for (const char* key : {"flight", "photos", "tags", "lights", "lights_every", "marsh"}) EXPECT_FALSE(summary["options"].contains(key)) << key;
   EXPECT_FALSE(summary.contains("flight"));
   EXPECT_EQ(summary["district_yaw_deg"][0], summary["city_yaw_deg"]);
   EXPECT_EQ(summary["blocks"]["rows"].get<size_t>() * summary["blocks"]["columns"].get<size_t>(), summary["blocks"]["altitudes_agl_m"].size());

@@ -90,6 +90,11 @@ TEST(TrainOptions, TakeCodesOfUpTo32Numbers) {
     options.appearance_codes = numbers;
     EXPECT_NE(Refusal(options).find("train.appearance_codes"), std::string::npos) << numbers;
   }
+  options.appearance_codes = 4;
+  options.appearance_of = "folder";
+  EXPECT_EQ(Refusal(options), "");
+  options.appearance_of = "flight";
+  EXPECT_NE(Refusal(options).find("train.appearance_of"), std::string::npos);
 }
 
 }  // namespace

@@ -10,22 +10,34 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/checkpoint/archive.h"
+#include "core/survey/survey.h"
 
 namespace skyquilt::worker {
+
+// Which photos share a code.
+struct CodeGroups {
+  std::vector<int> of_photo;       // per photo of the survey, index of its group
+  std::vector<std::string> names;  // per group
+};
+// by: "photo": every photo is a group of its name; "folder": a group has the photos of one folder and its path, which is empty for photos without.
+CodeGroups GroupPhotos(const survey::Survey& survey, const std::string& by);
 
 class AppearanceCodes {
  public:
   // For so many photos, all of the survey, so that a photo's number finds its code; those of photos that are never drawn, such as held-out ones, stay
   // 0. numbers: of a code; 0: off.
   AppearanceCodes(size_t photos, int numbers);
+  // One code per group, which then stands for "photo" below.
+  AppearanceCodes(CodeGroups groups, int numbers);
 
   bool On() const { return numbers_ > 0; }
   size_t numbers() const { return numbers_; }
   // `numbers()` numbers.
-  const float* Of(int photo) const { return state_.codes.data() + static_cast<size_t>(photo) * numbers_; }
+  const float* Of(int photo) const { return state_.codes.data() + Row(photo) * numbers_; }
   // Adds d loss / d code of one ray, `numbers()` numbers. The sums depend on the order of the rays.
   void Add(int photo, const float* gradient);
   // One Adam step with the gradients added since the last one. A photo whose gradient is not finite keeps its code.
@@ -33,8 +45,8 @@ class AppearanceCodes {
 
   // All that a step changes: whoever keeps it can go back to it.
   struct State {
-    std::vector<float> codes, moment1, moment2;  // [photo][number]
-    std::vector<int64_t> steps;                  // updates per photo; 0: not drawn yet
+    std::vector<float> codes, moment1, moment2;  // [group][number]
+    std::vector<int64_t> steps;                  // updates per group; 0: not drawn yet
   };
   State& state() { return state_; }
 
@@ -46,10 +58,13 @@ class AppearanceCodes {
  private:
   void SubtractMean();
 
-  size_t photos_, numbers_;
+  size_t Row(int photo) const { return static_cast<size_t>(groups_.of_photo[static_cast<size_t>(photo)]); }
+
+  CodeGroups groups_;
+  size_t rows_, numbers_;
   State state_;
   std::vector<double> gradient_;  // of this step, as codes
-  std::vector<uint8_t> touched_;  // per photo: has a gradient in this step
+  std::vector<uint8_t> touched_;  // per group: has a gradient in this step
 };
 
 }  // namespace skyquilt::worker

@@ -34,7 +34,7 @@ ConcealedGradient LossOfConcealedRay(const BatchRay& ray, const RayView& view, c
     const float behind_light = view.behind_light[c] + view.background_share * task.mean_share * image::LinearFromSrgb(ray.background[c]);
     const float light = view.front_light[c] + view.front_transmittance * (composed.light[c] + composed.plain.transmittance * behind_light);
     const auto [value, slope, log_gain_slope] = task.under ? RecordLight(light, ray.ray.exposure[c]) : brightness::Expose(plain, ray.ray.exposure[c]);
-    const PhotoLoss<float> photo = TonedPhotoLoss(value, ray.ray.target_srgb[c]);
+    const PhotoLoss<float> photo = task.toned ? TonedPhotoLoss(value, ray.ray.target_srgb[c]) : SquaredPhotoLoss(value, ray.ray.target_srgb[c]);
     sums.squared_error += photo.squared_error;
     float recorded_gradient = 0.0F;
     if (photo.counts) {

@@ -21,6 +21,7 @@ struct ConcealedRay {
 
 // Values shared by all rays of a step.
 struct ConcealedTask {
+  bool toned = true;           // the photo loss is that of toned values; false: of display values
   bool under = false;          // true: photos are compared with the concealed rendering; false: with the plain rendering
   float mean_share = 1.0F;     // share of the background's light in the concealed rendering
   float mean_log_gain = 0.0F;  // goal of log_share

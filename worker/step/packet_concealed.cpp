@@ -83,6 +83,7 @@ ConcealedRay PacketConcealed::ComposeRay(PacketSamples& s, size_t view) {
 
 ConcealedTask PacketConcealed::TaskOfRays() const {
   ConcealedTask task;
+  task.toned = shared_.luminance.toned;
   task.under = shared_.luminance.mode == brightness::LuminanceMode::kUnder;
   task.mean_share = static_cast<float>(std::exp(shared_.means.mean_log_gain));
   task.mean_log_gain = static_cast<float>(shared_.means.mean_log_gain);

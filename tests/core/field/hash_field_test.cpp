@@ -224,6 +224,41 @@ TEST(HashField, ADirectionComesWithTheCodeOfTheMeanLook) {
   }
 }
 
+// For any direction: the first harmonic is the same for all.
+TEST(HashField, AFoldedCodeGivesTheColoursOfThatCode) {
+  for (const int degree : {1, 3}) {
+    FieldConfig config = SmallConfig(1);
+    config.appearance = 5;
+    config.sh_degree = degree;
+    const HashField field(config);
+    base::Random random(7);
+    std::vector<float> grid(static_cast<size_t>(field.GridParameters())), networks(static_cast<size_t>(field.NetworkParameters()));
+    field.Initialize(random, grid, networks);
+    std::vector<float> folded = networks;
+    const std::vector<float> code = {0.5F, -1.0F, 0.0F, 2.0F, -0.25F};
+    field.FoldAppearance(code, folded);
+    const auto colors = [&](std::span<const float> parameters, bool coded, const float* direction) {
+      Activations a;
+      a.Reserve(field, kernel::kPad);
+      float* rows = a.color_in + static_cast<size_t>(kGeometryRows) * a.stride;
+      for (int k = 0; k < kGeometryRows; ++k) a.color_in[static_cast<size_t>(k) * a.stride] = 0.1F * static_cast<float>(k) - 0.7F;
+      field.EncodeDirection(direction, 1, rows, a.stride);
+      if (coded) field.EncodeAppearance(code.data(), 1, rows, a.stride);
+      field.Color(field.Prepare(parameters), a.color_in, a.stride, kernel::kPad, a.color_hidden, a.stride, a.color_raw, a.stride);
+      return std::array{a.color_raw[0], a.color_raw[a.stride], a.color_raw[2 * a.stride]};
+    };
+    for (const std::array<float, 3>& direction : {std::array{0.0F, 0.6F, 0.8F}, std::array{-1.0F, 0.0F, 0.0F}}) {
+      const auto expected = colors(networks, true, direction.data()), got = colors(folded, false, direction.data());
+      const auto plain = colors(networks, false, direction.data());
+      for (size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(got[c], expected[c], 1e-5F) << c;
+        EXPECT_NE(plain[c], expected[c]) << c;
+      }
+    }
+    EXPECT_THROW(field.FoldAppearance(std::vector<float>(4), folded), std::invalid_argument);
+  }
+}
+
 TEST(HashField, RefusesImpossibleSettings) {
   FieldConfig config = SmallConfig(1);
   config.hidden = 6;

@@ -27,6 +27,25 @@ TEST(AppearanceCodes, StartAtZeroAndAreNothingWhenOff) {
   EXPECT_TRUE(AppearanceCodes(3, 0).state().codes.empty());
 }
 
+TEST(AppearanceCodes, AreSharedByPhotosOfAFolder) {
+  survey::Survey survey;
+  for (const char* name : {"noon/1.jpg", "morning/1.jpg", "noon/2.jpg", "3.jpg"}) survey.photos.emplace_back().name = name;
+  const CodeGroups groups = GroupPhotos(survey, "folder");
+  EXPECT_EQ(groups.of_photo, (std::vector<int>{0, 1, 0, 2}));
+  EXPECT_EQ(groups.names, (std::vector<std::string>{"noon", "morning", ""}));
+  EXPECT_EQ(GroupPhotos(survey, "photo").of_photo, (std::vector<int>{0, 1, 2, 3}));
+  AppearanceCodes codes(groups, 2);
+  const std::vector<float> gradient = {1.0F, -1.0F};
+  codes.Add(2, gradient.data());
+  codes.Add(1, std::vector<float>{-1.0F, 1.0F}.data());
+  codes.Step(0.1);
+  EXPECT_EQ(CodeOf(codes, 0), CodeOf(codes, 2));
+  EXPECT_LT(CodeOf(codes, 0)[0], 0.0F);
+  EXPECT_GT(CodeOf(codes, 1)[0], 0.0F);
+  EXPECT_EQ(CodeOf(codes, 3), std::vector<float>(2, 0.0F));
+  EXPECT_EQ(codes.state().steps, (std::vector<int64_t>{1, 1, 0}));
+}
+
 // Adam's first step is the learning rate, whatever the gradient's size; the gradients of a photo's rays are summed.
 TEST(AppearanceCodes, MoveAgainstTheSumOfTheirGradients) {
   AppearanceCodes codes(3, 2);

@@ -34,6 +34,13 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
        "agree; renderings and held-out photos show the mean look. Codes can hide differences of exposure that brightness.correction would measure; "
        "0: "
        "off"},
+      {"refine_poses", &O::refine_poses, Range(),
+       "true: the poses of training photos are refined while the context is trained, and blocks and products use the refined ones; held-out photos "
+       "keep theirs. Needs encoding = hash or voxels"},
+      {"pose_rate_px", &O::pose_rate_px, Range{1e-4, 1},
+       "how far a step of its own moves a photo with refine_poses, about pixels as trained; it falls to a twentieth"},
+      {"pose_sigma_px", &O::pose_sigma_px, Range{1e-2, 1e4},
+       "standard deviation of the given poses with refine_poses, pixels as trained: photos that show little are held near them"},
       {"learning_rate", &O::learning_rate, Range{1e-6, 1}, "learning rate of Adam at the start"},
       {"final_learning_rate_share", &O::final_learning_rate_share, Range{1e-6, 1}, "learning rate at the end as a share of learning_rate"},
       {"sampler", &O::sampler, Range::OneOf({"occupancy", "proposal", "stratified"}),
@@ -91,6 +98,10 @@ void TrainOptions::Check(const std::string& section) const {
     throw base::UsageError(section +
                            ".ray_samples is not allowed: give whole numbers, two for the sampler stratified, such as [64, 128], and two to "
                            "four for proposal, such as [64, 64, 32]");
+  }
+  if (refine_poses && encoding != "hash" && encoding != "voxels") {
+    throw base::UsageError(section + ".refine_poses = true is not allowed with " + section + ".encoding = \"" + encoding +
+                           "\", which has no derivatives by position: choose \"hash\" or \"voxels\", or refine_poses = false");
   }
   if (levels * features % 4 != 0) {
     throw base::UsageError(section + ".levels = " + std::to_string(levels) + " is not allowed with " + section +

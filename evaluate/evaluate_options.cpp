@@ -17,6 +17,9 @@ std::vector<config::Field<EvaluateOptions>> EvaluateOptions::Fields() {
       {"normal_photos", &O::normal_photos, Range(),
        "folder of the same photos at normal exposure, to score renderings at normal brightness too; empty: none"},
       {"normal_stops", &O::normal_stops, Range{-10, 10}, "stops to brighten the renderings by for normal_photos"},
+      {"resect", &O::resect, Range(),
+       "also fit the pose of every held-out photo to the scene on half of its tiles, and score it on the other half with the pose as given and as "
+       "fitted; takes several times as long"},
       {"field_normals", &O::field_normals, Range(),
        "simulated surveys: also score the normals of the density and of the normal head by class; takes longer"},
       {"report_photos", &O::report_photos, Range::AtLeast(0), "held-out photos shown as images in the report, evenly spread; its tables have all"},

@@ -17,6 +17,7 @@ struct EvaluateOptions {
   bool predicted_gain = true;    // multiplied by the residual gain predicted for it
   std::string normal_photos;     // folder of the same photos at normal exposure; empty: none
   double normal_stops = 0.0;     // -10..10, brightening of the rendering for that comparison
+  bool resect = false;           // also score every photo with its pose fitted to the scene (photos/resect_photo.h)
   bool field_normals = false;    // also score normals of the density and of the head; needs true normals
   int report_photos = 40;        // photos shown in the report, evenly spread
   int report_image_width = 960;  // pixels

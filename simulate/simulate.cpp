@@ -28,6 +28,7 @@
 #include "simulate/model_frame.h"
 #include "simulate/photo_renderer.h"
 #include "simulate/place_spec.h"
+#include "simulate/pose_noise.h"
 #include "simulate/sparse_points.h"
 #include "simulate/surface_mesh.h"
 #include "simulate/survey_writer.h"
@@ -262,6 +263,7 @@ SimulateSummary Simulate(const SimulateOptions& options, const fs::path& folder,
   std::vector<survey::ColmapPoint> points = MakeSparsePoints(world, place.camera, photos, seeds, place.seed, threads);
   summary.n_points = static_cast<int>(points.size());
   survey::ColmapModel model = MakeModel(place.camera, photos, std::move(points));
+  AddPoseNoise(options.pose_noise_deg, options.pose_noise_m, place.seed, photos, model);
   std::optional<geo::Similarity3d> model_from_enu;
   if (!options.exact_frame) {
     model_from_enu = RandomModelFrame(place.seed);

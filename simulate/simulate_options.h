@@ -67,6 +67,8 @@ struct SimulateOptions {
   int panorama_width = 2048;              // 64..16384 pixels, even
   int edge_targets = 0;                   // 0..100 slanted-edge targets on the ground, see edge_targets.h
   bool exact_frame = true;                // false: the COLMAP model is under a random similarity, as structure from motion makes it
+  double pose_noise_deg = 0.0;            // 0..10, root mean square error of the model's rotations; not of photos with true depth (pose_noise.h)
+  double pose_noise_m = 0.0;              // 0..100, the same of its camera centres
   // Errors of the tags; none by default. See tag_faults.h.
   double tag_lag_s = 0.0;                // -5..10, the tagged position is where the drone was this long before
   double tag_drift_m = 0.0;              // -1000..1000, rise of the tagged heights from the first to the last photo

@@ -127,6 +127,7 @@ void SaveSession(const std::string& kind, const TrainJob& job, render::TrainedFi
     writer.SetAttribute(ProposalName(i, "steps"), trainer.sampler()->proposals()[i]->state().step);
   }
   trainer.codes().Put(writer);
+  if (trainer.poses() != nullptr) trainer.poses()->Put(writer);
   writer.SetAttribute("config_hash", job.config_hash);
   writer.SetAttribute("seed", static_cast<int64_t>(job.seed));
   writer.SetAttribute("rays_per_step", static_cast<int64_t>(trainer.rays_per_step()));
@@ -246,6 +247,10 @@ void LoadSession(const SavedSession& session, render::TrainedField& target, Fiel
     trainer.sampler()->proposals()[i]->state().step = reader.IntAttribute(ProposalName(i, "steps"));
   }
   trainer.codes().Get(reader, usable);
+  if (trainer.poses() != nullptr) {
+    trainer.poses()->Get(reader, usable);
+    trainer.UpdatePoses();
+  }
   if (extras != nullptr) {
     *extras->response = brightness::GetResponse(reader, usable);
     extras->learner->Get(reader, usable);
@@ -292,16 +297,32 @@ void LoadIntervals(const checkpoint::ArchiveReader& reader, const std::vector<in
 
 }  // namespace
 
-LoadedContext LoadContext(const std::filesystem::path& checkpoint, const std::vector<int>* photos) {
+namespace {
+
+// The newest checkpoint of a context that can be read.
+checkpoint::ArchiveReader OpenContext(const std::filesystem::path& checkpoint, std::filesystem::path* usable) {
   if (!std::filesystem::exists(checkpoint) && !std::filesystem::exists(checkpoint.string() + ".prev")) {
     throw base::InputError(checkpoint, "does not exist",
                            "The context is trained before the blocks; run train on the machine and folder that have it");
   }
   std::string why;
-  const std::filesystem::path usable = checkpoint::NewestUsable(checkpoint, "context", &why);
-  if (usable.empty()) throw base::InputError(checkpoint, "cannot be read (" + why + ")", "Train it again with --restart");
-  const checkpoint::ArchiveReader reader(usable);
+  *usable = checkpoint::NewestUsable(checkpoint, "context", &why);
+  if (usable->empty()) throw base::InputError(checkpoint, "cannot be read (" + why + ")", "Train it again with --restart");
+  checkpoint::ArchiveReader reader(*usable);
   reader.RequireVersion(scene::kCheckpointVersion);
+  return reader;
+}
+
+}  // namespace
+
+std::optional<survey::RefinedPoses> LoadContextPoses(const std::filesystem::path& checkpoint, const survey::Survey& survey) {
+  std::filesystem::path usable;
+  return ReadRefinedPoses(OpenContext(checkpoint, &usable), usable, survey);
+}
+
+LoadedContext LoadContext(const std::filesystem::path& checkpoint, const std::vector<int>* photos) {
+  std::filesystem::path usable;
+  const checkpoint::ArchiveReader reader = OpenContext(checkpoint, &usable);
   LoadedContext context{scene::GetField(reader, usable, ""), brightness::GetResponse(reader, usable), {}, {}, {}, {}};
   brightness::GetLuminance(reader, &context.luminance, &context.luminance_state);
   LoadIntervals(reader, photos, &context);

@@ -68,6 +68,9 @@ int ContinueAttempt(const SavedSession& session, TrainJob& job);
 void LoadSession(const SavedSession& session, render::TrainedField& target, FieldTrainer& trainer, SessionRecord* record,
                  const ContextBrightness* extras);
 
+// The poses that a finished context's training refined; nothing when it did not. survey: as prepared. Throws as LoadContext.
+std::optional<survey::RefinedPoses> LoadContextPoses(const std::filesystem::path& checkpoint, const survey::Survey& survey);
+
 // Loads a context for training a block. Of its surface intervals only those of these photos are read (indices, in any order), so that memory does not
 // grow with the survey; null: all. Throws base::InputError when neither the checkpoint nor the previous one can be read.
 LoadedContext LoadContext(const std::filesystem::path& checkpoint, const std::vector<int>* photos = nullptr);

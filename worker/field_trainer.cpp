@@ -45,7 +45,7 @@ std::optional<BinSampler> MakeSampler(const TrainOptions& options, const render:
 
 FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options,
                            AppearanceCodes codes, uint64_t seed, const LuminancePlan& luminance, brightness::ResponseLearner* learner,
-                           const FieldPriors& priors, base::ThreadPool& threads)
+                           const FieldPriors& priors, base::ThreadPool& threads, PoseLearner* poses)
     : target_(target),
       options_(luminance.luminance.On() && luminance.luminance.product ? WithoutPyramid(options) : options),
       start_log_gain_(luminance.start.mean_log_gain),
@@ -58,6 +58,7 @@ FieldTrainer::FieldTrainer(render::TrainedField& target, RaySource& source, cons
       step_(target, field_, context, luminance, threads, times_),
       learner_(learner),
       codes_(std::move(codes)),
+      poses_(poses != nullptr && poses->On() ? poses : nullptr),
       priors_(priors),
       source_(source),
       rays_per_step_(std::max(kFewestRays, options.batch_samples / (sampler_ ? sampler_->LastBins() : 24))),
@@ -109,11 +110,14 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
   step.network_l2 = kNetworkL2;
   step.distortion = options_.distortion * std::clamp((progress - kDistortionFrom) / (kDistortionTo - kDistortionFrom), 0.0, 1.0);
   brightness::ResponseLearner* learner = learner_ != nullptr && learner_->active() ? learner_ : nullptr;
-  const StepResult result = step_.Train(batch_, step, target_.parameters, state_, learner, &codes_);
+  const bool refines = poses_ != nullptr && poses_->ActiveAt(progress);
+  if (refines) ray_gradients_.level_shares = PoseLearner::LevelShares(progress, field_.encoding().parts());
+  const StepResult result = step_.Train(batch_, step, target_.parameters, state_, learner, &codes_, refines ? &ray_gradients_ : nullptr);
   if (learner != nullptr && result.finite) {
     learner->Step(progress);
     source_.UpdateExposures();
   }
+  if (refines && result.finite) RefinePoses(progress);
   if (!sampler_) ObserveSamples();
   if (sampler_ && result.finite) UseFoundWeights(progress, step.learning_rate);
   // Chooses the next number of rays so that the batch is full at this step's samples per ray; it changes by a quarter at most.
@@ -123,6 +127,14 @@ StepResult FieldTrainer::Step(double progress, double learning_rate_scale) {
     rays_per_step_ = std::clamp(static_cast<int>(next), kFewestRays, options_.batch_samples / 2);
   }
   return result;
+}
+
+void FieldTrainer::RefinePoses(double progress) {
+  const double ray_share = 1.0 / static_cast<double>(batch_.rays.size());
+  for (size_t k = 0; k < batch_.rays.size(); ++k) {
+    if (!batch_.rays[k].ray.empty) poses_->Add(batch_.rays[k].ray, ray_gradients_.rays[k], ray_share);
+  }
+  poses_->Step(progress, source_);
 }
 
 // Updates the occupancy of sampled cells. Each task updates a range of cells in the order of the samples, so that bits do not depend on threads. A

@@ -10,6 +10,7 @@
 #include "core/base/thread_pool.h"
 #include "core/field/optimizer.h"
 #include "core/render/trained_field.h"
+#include "worker/poses/pose_learner.h"
 #include "worker/rays/ray_batch.h"
 #include "worker/rays/ray_source.h"
 #include "worker/samplers/bin_sampler.h"
@@ -23,15 +24,22 @@ namespace skyquilt::worker {
 class FieldTrainer {
  public:
   // Trains target.parameters in place. They are allocated here and are zero until InitializeParameters() or LoadSession() sets them. context may be
-  // null. learner may be null: the photos' gains are then not learned. codes: of the source's photos.
+  // null. learner may be null: the photos' gains are then not learned; poses as well: nor are
+  // their poses refined. codes: of the source's photos.
   FieldTrainer(render::TrainedField& target, RaySource& source, const render::TrainedField* context, const TrainOptions& options,
                AppearanceCodes codes, uint64_t seed, const LuminancePlan& luminance, brightness::ResponseLearner* learner, const FieldPriors& priors,
-               base::ThreadPool& threads);
+               base::ThreadPool& threads, PoseLearner* poses = nullptr);
 
   field::OptimizerState& state() { return state_; }
   int& rays_per_step() { return rays_per_step_; }
   brightness::LuminanceState& luminance_state() { return step_.luminance_state(); }
   AppearanceCodes& codes() { return codes_; }
+  // Null where poses are not refined.
+  PoseLearner* poses() { return poses_; }
+  // Call it when the state of poses() was changed from outside.
+  void UpdatePoses() {
+    if (poses_ != nullptr) poses_->Tell(source_);
+  }
   // Call it when the photos' response was changed from outside.
   void UpdateExposures() { source_.UpdateExposures(); }
   void InitializeParameters();
@@ -52,6 +60,8 @@ class FieldTrainer {
   std::array<double, kPhases> PhaseSeconds() const { return times_.Seconds(); }
 
  private:
+  // With the gradients of the last step.
+  void RefinePoses(double progress);
   void ObserveSamples();
   // After a step with a sampler of bins: what it found along its rays.
   void UseFoundWeights(double progress, double learning_rate);
@@ -71,6 +81,8 @@ class FieldTrainer {
   FieldStep step_;
   brightness::ResponseLearner* learner_;
   AppearanceCodes codes_;
+  PoseLearner* poses_;
+  RayGradients ray_gradients_;  // of the last step that refined poses
   FieldPriors priors_;
   RaySource& source_;
   RayBatch batch_;

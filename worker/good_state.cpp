@@ -61,6 +61,7 @@ void GoodState::Keep() {
   rays_per_step_ = trainer_.rays_per_step();
   luminance_ = trainer_.luminance_state();
   codes_ = trainer_.codes().state();
+  if (trainer_.poses() != nullptr) poses_ = trainer_.poses()->state();
   kept_record_ = record_;
   if (extras_ != nullptr) {
     response_ = *extras_->response;
@@ -83,6 +84,10 @@ void GoodState::Restore() {
   trainer_.rays_per_step() = rays_per_step_;
   trainer_.luminance_state() = luminance_;
   trainer_.codes().state() = codes_;
+  if (trainer_.poses() != nullptr) {
+    trainer_.poses()->state() = poses_;
+    trainer_.UpdatePoses();
+  }
   record_.mean_squared_error = kept_record_.mean_squared_error;
   record_.guard = kept_record_.guard;
   if (extras_ != nullptr) {
@@ -106,6 +111,7 @@ void GoodState::Exchange() {
   std::swap(rays_per_step_, trainer_.rays_per_step());
   std::swap(luminance_, trainer_.luminance_state());
   std::swap(codes_, trainer_.codes().state());
+  if (trainer_.poses() != nullptr) std::swap(poses_, trainer_.poses()->state());
   std::swap(kept_record_, record_);
   if (extras_ != nullptr) {
     std::swap(response_, *extras_->response);

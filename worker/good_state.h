@@ -47,6 +47,7 @@ class GoodState {
   int rays_per_step_ = 0;
   brightness::LuminanceState luminance_;
   AppearanceCodes::State codes_;
+  PoseLearner::State poses_;
   SessionRecord kept_record_;
   brightness::Response response_;
   brightness::ResponseLearner::Moments moments_;

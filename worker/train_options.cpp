@@ -37,6 +37,13 @@ std::vector<config::Field<TrainOptions>> TrainOptions::Fields() {
       {"appearance_of", &O::appearance_of, Range::OneOf({"photo", "folder"}),
        "photo: every photo has its own code; folder: photos of one folder share a code, such as those of one flight in one light; does nothing "
        "without appearance_codes"},
+      {"refine_poses", &O::refine_poses, Range(),
+       "true: the poses of training photos are refined while the context is trained, and blocks and products use the refined ones; held-out photos "
+       "keep theirs. Needs encoding = hash or voxels"},
+      {"pose_rate_px", &O::pose_rate_px, Range{1e-4, 1},
+       "how far a step of its own moves a photo with refine_poses, about pixels as trained; it falls to a twentieth"},
+      {"pose_sigma_px", &O::pose_sigma_px, Range{1e-2, 1e4},
+       "standard deviation of the given poses with refine_poses, pixels as trained: photos that show little are held near them"},
       {"learning_rate", &O::learning_rate, Range{1e-6, 1}, "learning rate of Adam at the start"},
       {"final_learning_rate_share", &O::final_learning_rate_share, Range{1e-6, 1}, "learning rate at the end as a share of learning_rate"},
       {"sampler", &O::sampler, Range::OneOf({"occupancy", "proposal", "stratified"}),
@@ -94,6 +101,10 @@ void TrainOptions::Check(const std::string& section) const {
     throw base::UsageError(section +
                            ".ray_samples is not allowed: give whole numbers, two for the sampler stratified, such as [64, 128], and two to "
                            "four for proposal, such as [64, 64, 32]");
+  }
+  if (refine_poses && encoding != "hash" && encoding != "voxels") {
+    throw base::UsageError(section + ".refine_poses = true is not allowed with " + section + ".encoding = \"" + encoding +
+                           "\", which has no derivatives by position: choose \"hash\" or \"voxels\", or refine_poses = false");
   }
   if (levels * features % 4 != 0) {
     throw base::UsageError(section + ".levels = " + std::to_string(levels) + " is not allowed with " + section +

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/config/options.h"
+#include "worker/poses/pose_options.h"
 
 namespace skyquilt::worker {
 
@@ -29,6 +30,9 @@ struct TrainOptions {
   int sh_degree = 3;                    // of the spherical harmonics of the viewing direction; 1: colour does not depend on it
   int appearance_codes = 0;             // numbers of the code of every training photo (worker/step/appearance_codes.h); 0: off
   std::string appearance_of = "photo";  // photo or folder: which photos share a code
+  bool refine_poses = false;            // of training photos, while the context is trained (worker/poses/pose_learner.h)
+  double pose_rate_px = 0.02;           // PoseLearnerOptions::rate_px
+  double pose_sigma_px = 2.0;           // PoseLearnerOptions::sigma_px
 
   // Adam. The rate rises over the first 50 steps, then is constant, then falls geometrically.
   double learning_rate = 3e-2;             // highest rate
@@ -51,6 +55,8 @@ struct TrainOptions {
   bool diagnostics = false;         // write worker/train_diagnostics.h beside the log
   std::string coupling = "guided";  // guided: blocks render the context outside their ground plan; independent: they do not use its field
   std::string start = "surfaces";   // cells that are sampled first: near known surfaces, or everywhere that photos see
+
+  PoseLearnerOptions PoseOptions() const { return {refine_poses, pose_rate_px, pose_sigma_px}; }
 
   static std::vector<config::Field<TrainOptions>> Fields();
   static std::vector<config::FixedOption> Fixed();

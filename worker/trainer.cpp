@@ -11,6 +11,7 @@
 #include "worker/block_session.h"
 #include "worker/field_trainer.h"
 #include "worker/make_background.h"
+#include "worker/poses/pose_learner.h"
 #include "worker/start/point_ranges.h"
 #include "worker/start/point_surface.h"
 #include "worker/start/starting_occupancy.h"
@@ -94,6 +95,14 @@ AppearanceCodes CodesOf(const TrainJob& job) {
   return {GroupPhotos(*job.survey, job.options.appearance_of), job.options.appearance_codes};
 }
 
+// The survey with these poses; nothing without poses.
+std::optional<survey::Survey> WithPoses(const survey::Survey& survey, const std::optional<survey::RefinedPoses>& poses) {
+  if (!poses) return std::nullopt;
+  std::optional<survey::Survey> refined = survey;
+  survey::ApplyRefinedPoses(*poses, *refined);
+  return refined;
+}
+
 void RequireJob(const TrainJob& job) {
   SKYQUILT_CHECK(job.survey != nullptr && job.pixels != nullptr, "a job needs a survey and its pixels");
   SKYQUILT_CHECK(job.response.photos() == job.survey->photos.size() && job.pixels->size() == job.survey->photos.size(),
@@ -129,7 +138,8 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   source.UpdateExposures();
   render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active(), PriorOptions::Off());
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};
-  FieldTrainer trainer(target, source, nullptr, job.options, CodesOf(job), job.seed, luminance, &learner, {}, threads);
+  PoseLearner poses(*job.survey, source, job.options.PoseOptions());
+  FieldTrainer trainer(target, source, nullptr, job.options, CodesOf(job), job.seed, luminance, &learner, {}, threads, &poses);
   SessionRecord record;
   if (saved) {
     LoadSession(*saved, target, trainer, &record, &extras);
@@ -150,8 +160,10 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
   TrainLoop loop("context", job, target, trainer, &extras, record, report);
   if (!loop.Run()) return loop.Failure();
   if (job.learn.Gains()) brightness::PredictGains(brightness::CapturedPhotos(*job.survey), response);
-  const ContextResults findings{SurfaceIntervals(source, *job.survey, target, threads),
-                                MakeBackground(source, *job.survey, surface, ranges, job.seed, threads)};
+  const std::optional<survey::Survey> refined = poses.On() ? WithPoses(*job.survey, RefinedPosesOf(poses.state(), *job.survey)) : std::nullopt;
+  const survey::Survey& survey = refined ? *refined : *job.survey;
+  const ContextResults findings{SurfaceIntervals(source, survey, target, threads),
+                                MakeBackground(source, survey, surface, ranges, job.seed, threads)};
   return loop.SaveResult(&findings);
 }
 
@@ -175,6 +187,9 @@ TrainResult TrainBlock(const TrainJob& given, const BlockSpec& block, const std:
         "was trained with " + std::to_string(loaded.response.photos()) + " photos, but the survey has " + std::to_string(job.survey->photos.size()),
         "Train it again with --restart");
   }
+  std::optional<survey::Survey> refined;
+  if (job.options.refine_poses) refined = WithPoses(*job.survey, LoadContextPoses(context_checkpoint, *job.survey));
+  if (refined) job.survey = &*refined;
   // The losses of a concealing field know no distances of rays.
   const PriorOptions prior_options = loaded.luminance.On() ? PriorOptions::Off() : job.priors;
   render::TrainedField target = MakeTarget(job, block, false, loaded.luminance, loaded.response, false, prior_options);

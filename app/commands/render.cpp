@@ -9,6 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/scene/scene.h"
+#include "core/survey/refined_poses.h"
 #include "products/camera_path.h"
 #include "products/elevation.h"
 #include "products/map_products.h"
@@ -91,7 +92,7 @@ void RenderAsked(const RenderFlags& flags, const Target& target, const coordinat
         "--photo, --test, --plane auto and a video along the cameras need the survey: give the project folder, or a scene.h5 inside its project");
   }
   const bool from_photos = target.project && flags.ortho && options.ortho_source == "photos";
-  if (target.project && (needs_survey || from_photos || !flags.plane.empty())) survey = survey::LoadSurvey(target.project->SurveyFolder());
+  if (target.project && (needs_survey || from_photos || !flags.plane.empty())) survey = survey::LoadRefinedSurvey(target.project->SurveyFolder());
   if (!flags.photos.empty() || flags.test) {
     std::vector<products::View> views;
     if (flags.test) views = products::ViewsOfPhotos(*survey, {}, flags.width);

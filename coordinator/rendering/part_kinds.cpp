@@ -6,6 +6,7 @@
 
 #include "coordinator/rendering/rank_parts.h"
 #include "core/base/errors.h"
+#include "core/survey/refined_poses.h"
 #include "products/map_products.h"
 #include "products/photo_map/paint_job.h"
 #include "surface/piece_fuser.h"
@@ -92,8 +93,8 @@ class TilePainter : public PartMaker {
  public:
   TilePainter(const json& setup, double memory_bytes, base::ThreadPool& threads)
       : threads_(threads),
-        job_(survey::LoadSurvey(setup.at("survey").get<std::string>()), setup.at("job").get<std::string>(), products::PictureMemory(memory_bytes),
-             threads) {}
+        job_(survey::LoadRefinedSurvey(setup.at("survey").get<std::string>()), setup.at("job").get<std::string>(),
+             products::PictureMemory(memory_bytes), threads) {}
 
   void Make(base::ByteUnpacker& request, base::BytePacker& reply) override {
     const auto areas = request.Take<std::vector<TileArea>>();

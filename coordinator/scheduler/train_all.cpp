@@ -22,6 +22,8 @@
 #include "core/base/json_text.h"
 #include "core/base/log.h"
 #include "core/base/progress.h"
+#include "core/survey/refined_poses.h"
+#include "worker/block_session.h"
 
 namespace skyquilt::coordinator {
 namespace {
@@ -86,7 +88,8 @@ class Training {
     }
     RequireMemory(*input_.blocks, *input_.survey, settings_, threads, per_host);
     TrainContext(trainer, all_threads);
-    ProvideRejectedPixels(*input_.survey, *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
+    ProvideRefinedPoses();
+    ProvideRejectedPixels(Trained(), *input_.blocks, pixels, settings_, project_, input_.config_hash, pool);
     ShowContext(pool);
     TrainBlocks(trainer, threads);
     ledger_.SetSpent(Now(), true);
@@ -156,11 +159,25 @@ class Training {
     context_setup_s_ = outcome.setup_s;
   }
 
+  // Those that the context refined are kept beside the survey; of an earlier training there are none any more.
+  void ProvideRefinedPoses() {
+    survey::RemoveRefinedPoses(project_.SurveyFolder());
+    if (!settings_.train.refine_poses) return;
+    const std::optional<survey::RefinedPoses> poses = worker::LoadContextPoses(project_.ContextCheckpoint(), *input_.survey);
+    if (!poses) return;
+    survey::SaveRefinedPoses(*poses, *input_.survey, project_.SurveyFolder());
+    refined_ = *input_.survey;
+    survey::ApplyRefinedPoses(*poses, *refined_);
+    base::LogInfo("{}", poses->Summary());
+  }
+  // With the poses that the fields are trained with.
+  const survey::Survey& Trained() const { return refined_ ? *refined_ : *input_.survey; }
+
   // The time that this takes is not taken from the blocks' budget, unless that is for all of the stage; then it is a small part of it.
   void ShowContext(base::ThreadPool& pool) {
     const auto begin = std::chrono::steady_clock::now();
     const double most_s = settings_.run.budget_has_everything ? kPreviewShare * settings_.run.time_budget_s : context_s_;
-    ProvideContextPreview(*input_.survey, *input_.blocks, settings_, project_, std::min(context_s_, most_s), pool);
+    ProvideContextPreview(Trained(), *input_.blocks, settings_, project_, std::min(context_s_, most_s), pool);
     SetAside(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
 
@@ -275,6 +292,7 @@ class Training {
   const Project& project_;
   TrainLedger ledger_;
   double spent_before_s_;
+  std::optional<survey::Survey> refined_;
   double context_s_ = 0.0;  // training time of the context
   double context_setup_s_ = 0.0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -7,6 +7,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/image/pixel_cache.h"
+#include "core/survey/refined_poses.h"
 #include "core/trust/trust.h"
 #include "evaluate/trust/measure_trust.h"
 #include "merge/merge.h"
@@ -21,7 +22,7 @@ void MeasureSceneTrust(Pipeline& pipeline) {
   if (!pipeline.settings.trust.Measured()) return;
   try {
     SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
-    const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
+    const survey::Survey survey = survey::LoadRefinedSurvey(project.SurveyFolder());
     std::filesystem::create_directories(project.PixelCacheFile().parent_path());
     const image::PixelCache pixels =
         image::PixelCache::Open(project.PixelCacheFile(), PixelSources(survey), pipeline.settings.run.image_width, session.threads());

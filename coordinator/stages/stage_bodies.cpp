@@ -17,6 +17,7 @@
 #include "core/base/thread_pool.h"
 #include "core/image/video_writer.h"
 #include "core/scene/scene.h"
+#include "core/survey/refined_poses.h"
 #include "core/survey/view_kind.h"
 #include "evaluate/evaluate.h"
 #include "masks/make_masks.h"
@@ -138,7 +139,7 @@ std::string ProductsBody(Pipeline& pipeline, const StageStamp& /*stamp*/) {
   const bool along_cameras = options.video_seconds > 0.0 && options.video_path == "cameras";
   survey::Survey survey;
   const bool from_photos = options.ortho && options.ortho_source == "photos";
-  if (kinds.elevations || along_cameras || from_photos) survey = survey::LoadSurvey(pipeline.project.SurveyFolder());
+  if (kinds.elevations || along_cameras || from_photos) survey = survey::LoadRefinedSurvey(pipeline.project.SurveyFolder());
   const std::filesystem::path folder = pipeline.project.ProductsFolder();
   SceneSession session(pipeline.comm, pipeline.project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   const scene::Scene& scene = session.scene();
@@ -176,7 +177,7 @@ std::string EvaluateBody(Pipeline& pipeline, const StageStamp& stamp) {
   const Project& project = pipeline.project;
   SceneSession session(pipeline.comm, project.SceneFile(), pipeline.settings.run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   base::ThreadPool& threads = session.threads();
-  const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
+  const survey::Survey survey = survey::LoadRefinedSurvey(project.SurveyFolder());
   const partition::BlockSet blocks = partition::LoadBlocks(project.BlocksFile());
   std::filesystem::create_directories(project.PixelCacheFile().parent_path());
   const image::PixelCache pixels =

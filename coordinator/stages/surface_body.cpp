@@ -11,6 +11,7 @@
 #include "core/base/log.h"
 #include "core/image/pixel_cache.h"
 #include "core/scene/scene.h"
+#include "core/survey/refined_poses.h"
 #include "products/map_area.h"
 #include "products/map_rays.h"
 #include "products/ray_caster.h"
@@ -42,7 +43,7 @@ std::string SurfaceBody(Pipeline& pipeline, const StageStamp& stamp) {
   run.memory_gb = 0.5 * settings.run.MemoryLimitBytes() / 1073741824.0;
   SceneSession session(pipeline.comm, project.SceneFile(), run, pipeline.verbose, pipeline.quiet, &pipeline.rendering_s);
   const scene::Scene& scene = session.scene();
-  const survey::Survey survey = survey::LoadSurvey(project.SurveyFolder());
+  const survey::Survey survey = survey::LoadRefinedSurvey(project.SurveyFolder());
   const gis::MapGrid grid = products::PlanHeightGrid(scene.info(), settings.products);
   surface::SurfaceInput input;
   input.options = settings.surface;

@@ -126,9 +126,18 @@ void HashField::StepTau(const float* geometry, int64_t n, float max_log_tau, flo
 void HashField::EncodeDirection(const float direction[3], int64_t count, float* rows, size_t stride) const {
   float sh[16] = {};
   encoding::SphericalHarmonics(direction[0], direction[1], direction[2], config_.sh_degree, sh);
-  const int directions = AppearanceRow() - kGeometryRows;
+  const int directions = DirectionRows();
   for (int k = 0; k < directions; ++k) std::fill_n(rows + static_cast<size_t>(k) * stride, count, sh[k]);
   for (int k = directions; k < ColorInputRows() - kGeometryRows; ++k) std::fill_n(rows + static_cast<size_t>(k) * stride, count, 0.0F);
+}
+
+void HashField::DirectionBackward(const double direction[3], int64_t count, const float* rows_gradient, size_t stride, double gradient[3]) const {
+  double by_row[16] = {};
+  for (size_t k = 0; k < static_cast<size_t>(config_.sh_degree * config_.sh_degree); ++k) {
+    const float* const row = rows_gradient + k * stride;
+    for (int64_t s = 0; s < count; ++s) by_row[k] += static_cast<double>(row[s]);
+  }
+  encoding::SphericalHarmonicsBackward(direction[0], direction[1], direction[2], config_.sh_degree, by_row, gradient);
 }
 
 void HashField::EncodeAppearance(const float* code, int64_t count, float* rows, size_t stride) const {
@@ -183,8 +192,12 @@ void HashField::Backward(const NetworkWeights& weights, Activations& a, float* f
     std::swap(current, next);
   }
   kernel::DenseWeightGradient(current, stride, hidden, a.color_in, stride, ColorInputRows(), n, gradient_of(ColorInput()));
-  // The direction has no parameters: its rows need no gradient.
+  // The direction has no parameters: its rows need a gradient only where poses are refined.
   kernel::Dense(weights.transposed[ColorInput()].data(), kGeometryRows, hidden, current, stride, n, false, a.geometry_gradient, stride);
+  if (a.by_direction) {
+    const float* by_direction = weights.transposed[ColorInput()].data() + static_cast<ptrdiff_t>(kGeometryRows) * hidden;
+    kernel::Dense(by_direction, DirectionRows(), hidden, current, stride, n, false, a.direction_gradient, stride);
+  }
   if (config_.appearance > 0) {
     const float* by_code = weights.transposed[ColorInput()].data() + static_cast<ptrdiff_t>(AppearanceRow()) * hidden;
     kernel::Dense(by_code, AppearanceRows(), hidden, current, stride, n, false, a.appearance_gradient, stride);
@@ -239,9 +252,12 @@ void Activations::Reserve(const HashField& field, int64_t n) {
   const auto color_rows = static_cast<size_t>(field.ColorInputRows());
   const auto color_layers = static_cast<size_t>(field.config().color_hidden_layers);
   const auto code_rows = static_cast<size_t>(field.AppearanceRows());
+  const auto direction_rows = static_cast<size_t>(field.DirectionRows());
   const auto density_rows = static_cast<size_t>(field.DensityHiddenRows());
   kept_rows = field.DensityHiddenRows() + kGeometryRows;
-  buffer_.assign(stride * (density_rows + color_rows + color_layers * hidden + 2 * kColorRows + 1 + kGeometryRows + code_rows + 2 * hidden), 0.0F);
+  buffer_.assign(
+      stride * (density_rows + color_rows + color_layers * hidden + 2 * kColorRows + 1 + kGeometryRows + code_rows + direction_rows + 2 * hidden),
+      0.0F);
   float* next = buffer_.data();
   const auto take = [&](size_t rows) { return std::exchange(next, next + rows * stride); };
   density_hidden = take(density_rows);
@@ -252,6 +268,7 @@ void Activations::Reserve(const HashField& field, int64_t n) {
   log_density_gradient = take(1);
   geometry_gradient = take(kGeometryRows);
   if (code_rows > 0) appearance_gradient = take(code_rows);
+  direction_gradient = take(direction_rows);
   for (float*& gradient : hidden_gradient) gradient = take(hidden);
 }
 

@@ -73,7 +73,8 @@ class Activations {
   void Reserve(const class HashField& field, int64_t n);
 
   size_t stride = 0;
-  int kept_rows = 0;  // rows of density_hidden and geometry together
+  int kept_rows = 0;          // rows of density_hidden and geometry together
+  bool by_direction = false;  // whether HashField::Backward writes direction_gradient
   float* density_hidden = nullptr;
   float* color_in = nullptr;  // geometry, then spherical harmonics of the direction, then the appearance code
   float* color_hidden[3] = {nullptr, nullptr, nullptr};
@@ -83,6 +84,7 @@ class Activations {
   float* log_density_gradient = nullptr;
   float* geometry_gradient = nullptr;
   float* appearance_gradient = nullptr;  // by the AppearanceRows() rows of color_in; null without codes
+  float* direction_gradient = nullptr;   // by the DirectionRows() rows of color_in; written where `by_direction`
   float* hidden_gradient[2] = {nullptr, nullptr};
   float* geometry() const { return color_in; }
 
@@ -134,7 +136,8 @@ class HashField {
   // Rows of the colour network's input: geometry, directions, and AppearanceRows() of the code from row AppearanceRow() on, of which the last may be
   // padding.
   int ColorInputRows() const { return AppearanceRow() + AppearanceRows(); }
-  int AppearanceRow() const { return kGeometryRows + kernel::PaddedRows(config_.sh_degree * config_.sh_degree); }
+  int DirectionRows() const { return kernel::PaddedRows(config_.sh_degree * config_.sh_degree); }
+  int AppearanceRow() const { return kGeometryRows + DirectionRows(); }
   int AppearanceRows() const { return kernel::PaddedRows(config_.appearance); }
 
   // Initial parameters: grid by Encoding::Initialize, networks Xavier uniform, luminance row and bias 0 with equal taps.
@@ -161,12 +164,16 @@ class HashField {
   // Changes the network parameters so that colours are those with this code where no code is given: the first spherical harmonic is constant, so its
   // weights can take what the code adds to the first layer of the colour network. networks: NetworkParameters(); code: config().appearance numbers.
   void FoldAppearance(std::span<const float> code, std::span<float> networks) const;
+  // Backward pass of EncodeDirection for the samples of one ray: adds to gradient[3] the derivatives by the direction. rows_gradient:
+  // Activations::direction_gradient from the ray's first sample on.
+  void DirectionBackward(const double direction[3], int64_t count, const float* rows_gradient, size_t stride, double gradient[3]) const;
   // Colour network. color_in: ColorInputRows() rows, geometry first. hidden: one buffer of config().hidden rows per hidden layer.
   void Color(const NetworkWeights& weights, const float* color_in, size_t in_stride, int64_t n, float* const hidden[3], size_t hidden_stride,
              float* color_raw, size_t color_stride) const;
   // Backward pass of Density and Color, whose activations are in `a`. Inputs: a.color_gradient, a.log_density_gradient, features. Replaces the
-  // encoding's features by their gradient, writes a.appearance_gradient when there are codes, and adds to network_gradient. more_geometry_gradient:
-  // null, or kGeometryRows rows of a.stride that are added to the gradient of the geometry, such as those of NormalHeadBackward.
+  // encoding's features by their gradient, writes a.appearance_gradient when there are codes and a.direction_gradient when a.by_direction, and adds
+  // to network_gradient. more_geometry_gradient: null, or kGeometryRows rows of a.stride that are added to the gradient of the geometry, such as
+  // those of NormalHeadBackward.
   void Backward(const NetworkWeights& weights, Activations& a, float* features, size_t feature_stride, int64_t n, float* network_gradient,
                 const float* more_geometry_gradient = nullptr) const;
   // The part of it for the density network, for fields that need no colour: a.geometry_gradient in, all kGeometryRows rows.

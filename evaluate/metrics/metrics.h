@@ -56,7 +56,9 @@ struct Warning {
 struct Metrics {
   // Means over the test photos of the values per photo, as usual in NeRF papers; photos without the value do not count.
   double psnr = kNotMeasured;
-  double psnr_1000 = kNotMeasured;  // at a width of photos::kCommonWidth
+  double psnr_1000 = kNotMeasured;      // at a width of photos::kCommonWidth
+  double psnr_posed = kNotMeasured;     // on every other tile, with the photos' poses as given; with evaluate.resect
+  double psnr_resected = kNotMeasured;  // and as fitted on the tiles between them
   double psnr_exif_gain = kNotMeasured;
   double psnr_normal = kNotMeasured;
   double ssim_normal = kNotMeasured;

@@ -28,6 +28,9 @@ Json PhotoJson(const photos::PhotoScore& score, bool has_truth) {
   json["height"] = score.height;
   json["psnr"] = NumberOrNull(score.psnr_db);
   json["psnr_1000"] = NumberOrNull(score.psnr_1000_db);
+  json["psnr_posed"] = NumberOrNull(score.psnr_posed_db);
+  json["psnr_resected"] = NumberOrNull(score.psnr_resected_db);
+  json["resected_px"] = NumberOrNull(score.resected_px);
   json["ssim"] = NumberOrNull(score.ssim);
   json["flip"] = NumberOrNull(score.flip);
   json["coverage"] = NumberOrNull(score.Coverage());

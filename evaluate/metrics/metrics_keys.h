@@ -11,8 +11,10 @@ namespace skyquilt::evaluate::metrics {
 using KeyedNumber = std::pair<const char*, double Metrics::*>;
 
 // Numbers of the whole evaluation.
-inline constexpr std::array<KeyedNumber, 20> kScores = {{{"psnr", &Metrics::psnr},
+inline constexpr std::array<KeyedNumber, 22> kScores = {{{"psnr", &Metrics::psnr},
                                                          {"psnr_1000", &Metrics::psnr_1000},
+                                                         {"psnr_posed", &Metrics::psnr_posed},
+                                                         {"psnr_resected", &Metrics::psnr_resected},
                                                          {"ssim", &Metrics::ssim},
                                                          {"flip", &Metrics::flip},
                                                          {"coverage", &Metrics::coverage},

@@ -24,11 +24,13 @@ constexpr size_t kFewestBytesPerPhoto = 160;  // of its numbers; names may be sh
 template <typename Score, typename Visit>
 void VisitMembers(Score& score, Visit visit) {
   auto& [photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_1000_db, expected_psnr_db,
-         psnr_exif_gain_db, psnr_normal_db, ssim_normal, psnr_normal_fitted_db, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db,
-         right_half_fitted_db, fitted_stops, tiles_db, tiles_gains_db, tiles_shading_db, depth_rmse_m, depth_median_abs_m, render_seconds] = score;
+         psnr_exif_gain_db, psnr_normal_db, ssim_normal, psnr_normal_fitted_db, ssim, flip, psnr_posed_db, psnr_resected_db, resected_px,
+         psnr_full_db, ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops, tiles_db, tiles_gains_db, tiles_shading_db,
+         depth_rmse_m, depth_median_abs_m, render_seconds] = score;
   visit(photo, name, width, height, used_pixels, covered_pixels, exposure_gain, predicted_stops, psnr_db, psnr_1000_db, expected_psnr_db,
-        psnr_exif_gain_db, psnr_normal_db, ssim_normal, psnr_normal_fitted_db, ssim, flip, psnr_full_db, ssim_full, flip_full, lpips, right_half_db,
-        right_half_fitted_db, fitted_stops, tiles_db, tiles_gains_db, tiles_shading_db, depth_rmse_m, depth_median_abs_m, render_seconds);
+        psnr_exif_gain_db, psnr_normal_db, ssim_normal, psnr_normal_fitted_db, ssim, flip, psnr_posed_db, psnr_resected_db, resected_px, psnr_full_db,
+        ssim_full, flip_full, lpips, right_half_db, right_half_fitted_db, fitted_stops, tiles_db, tiles_gains_db, tiles_shading_db, depth_rmse_m,
+        depth_median_abs_m, render_seconds);
 }
 
 void AddMeans(const Scores& scores, Metrics* metrics) {
@@ -36,6 +38,8 @@ void AddMeans(const Scores& scores, Metrics* metrics) {
   metrics->psnr_1000 = MeanOver(scores.photos, &photos::PhotoScore::psnr_1000_db);
   metrics->psnr_normal = MeanOver(scores.photos, &photos::PhotoScore::psnr_normal_db);
   metrics->ssim_normal = MeanOver(scores.photos, &photos::PhotoScore::ssim_normal);
+  metrics->psnr_posed = MeanOver(scores.photos, &photos::PhotoScore::psnr_posed_db);
+  metrics->psnr_resected = MeanOver(scores.photos, &photos::PhotoScore::psnr_resected_db);
   metrics->psnr_exif_gain = MeanOver(scores.photos, &photos::PhotoScore::psnr_exif_gain_db);
   metrics->ssim = MeanOver(scores.photos, &photos::PhotoScore::ssim);
   metrics->flip = MeanOver(scores.photos, &photos::PhotoScore::flip);

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <span>
 
 #include "core/base/log.h"
+#include "core/base/order_statistics.h"
 #include "core/survey/view_kind.h"
 #include "evaluate/photos/load_held_out_photo.h"
+#include "evaluate/photos/resect_photo.h"
 #include "evaluate/photos/training_depths.h"
 
 namespace skyquilt::evaluate::photos {
@@ -97,6 +100,7 @@ PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, ba
   if (field_normals && input_.scene->info().normal_head) {
     findings.head_normals = NormalsOf(rendered, findings.scored, &render::RayColor::predicted_normal);
   }
+  if (input_.options.resect) ScoreResected(task, recordings.predicted, rendered, threads, &findings);
   if (input_.trust != nullptr) *trust = CompareTrust(*input_.trust, facts, task, rendered, findings.scored, threads);
   PhotoScore& score = findings.score;
   score.photo = photo;
@@ -109,6 +113,25 @@ PhotoResult HeldOutScorer::ScoreRecorded(int photo, const HeldOutPhoto& task, ba
   score.psnr_exif_gain_db = recordings.Differ() ? PsnrWithResponse(task, recordings.tagged, as_reference, findings.scored, threads) : score.psnr_db;
   score.render_seconds = render_seconds;
   return findings;
+}
+
+void HeldOutScorer::ScoreResected(const HeldOutPhoto& task, const PhotoResponse& recording, std::span<const render::RayColor> as_given,
+                                  base::ThreadPool& threads, PhotoResult* findings) const {
+  std::vector<double> depths;
+  for (size_t i = 0; i < as_given.size(); ++i) {
+    const auto depth = static_cast<double>(as_given[i].depth_median);
+    if (findings->scored.data[i] != 0 && depth > 0.0 && std::isfinite(depth)) depths.push_back(depth);
+  }
+  if (depths.empty()) return;
+  const PhotoRenderer render = [&](const camera::Camera& camera, const geo::Rigid3d& cam_from_enu) {
+    std::vector<render::RayColor> made = input_.scene->RenderCamera(camera, cam_from_enu, {.look = scene::Rendition::kRecorded}, threads);
+    ApplyResponse(camera, recording, made, threads);
+    return made;
+  };
+  const ResectedPhoto resected = ResectPhoto(task, findings->scored, as_given, base::Median(std::move(depths)), render);
+  findings->score.psnr_posed_db = resected.given_db;
+  findings->score.psnr_resected_db = resected.resected_db;
+  findings->score.resected_px = resected.moved_px;
 }
 
 std::vector<render::RayColor> HeldOutScorer::RenderNormal(const HeldOutPhoto& task, base::ThreadPool& threads) const {

@@ -52,6 +52,9 @@ class HeldOutScorer {
   // as_rendered: takes the rendering before the response; may be null.
   PhotoResult ScoreRecorded(int photo, const HeldOutPhoto& task, base::ThreadPool& threads, std::vector<render::RayColor>* as_rendered,
                             PhotoTrust* trust) const;
+  // Fits the photo's pose to the scene and scores it on the tiles that were not fitted. as_given: at the photo's brightness.
+  void ScoreResected(const HeldOutPhoto& task, const PhotoResponse& recording, std::span<const render::RayColor> as_given, base::ThreadPool& threads,
+                     PhotoResult* findings) const;
   std::vector<render::RayColor> RenderNormal(const HeldOutPhoto& task, base::ThreadPool& threads) const;
 
   const EvaluateInput& input_;

@@ -31,7 +31,10 @@ struct PhotoScore {
   double psnr_normal_fitted_db = kNotMeasured;  // the same on the tiles that are not fitted, with gains per colour fitted on the others
   double ssim = kNotMeasured;
   double flip = kNotMeasured;
-  double psnr_full_db = kNotMeasured;  // over all pixels that are not masked
+  double psnr_posed_db = kNotMeasured;     // over the covered pixels of every other tile, with the photo's pose as given (evaluate.resect),
+  double psnr_resected_db = kNotMeasured;  // and with the pose fitted on the tiles between them (resect_photo.h),
+  double resected_px = kNotMeasured;       // which moves the picture by this much, pixels
+  double psnr_full_db = kNotMeasured;      // over all pixels that are not masked
   double ssim_full = kNotMeasured;
   double flip_full = kNotMeasured;
   double lpips = kNotMeasured;                           // full frame

@@ -1,6 +1,6 @@
 // Draws training rays. Photos are cut into tiles, and a field is given the tiles it should learn from, so that a block trains only on pixels that
 // show it. Drawing depends only on the random generator given to it, so there is no state to save. Thread-safe except for UpdateExposures,
-// SetRejected, SetLeftOut and SetTiles.
+// SetPose, SetRejected, SetLeftOut and SetTiles.
 #pragma once
 
 #include <Eigen/Core>
@@ -95,6 +95,9 @@ class RaySource {
   size_t photos() const { return cameras_.size(); }
   // The camera at the cached image size.
   const camera::Camera& CameraOf(int photo) const { return cameras_[static_cast<size_t>(photo)]; }
+  // Where the photo's rays come from: as prepared, until SetPose changes it.
+  const geo::Rigid3d& PoseOf(int photo) const { return enu_from_cam_[static_cast<size_t>(photo)]; }
+  void SetPose(int photo, const geo::Rigid3d& enu_from_cam) { enu_from_cam_[static_cast<size_t>(photo)] = enu_from_cam; }
   // The ray through a position in the cached image, pixels.
   void RayThrough(int photo, const Eigen::Vector2d& pixel, Eigen::Vector3d* origin_enu, Eigen::Vector3d* direction_enu) const;
   // Mean display values of a photo's tiles at reference exposure, [row][column], each from a few of its pixels; NaN where all of them are masked.

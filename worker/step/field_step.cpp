@@ -74,7 +74,7 @@ void FieldStep::Encode(const RayBatch& batch, std::span<const float> grid) {
 }
 
 StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::OptimizerState& state,
-                            brightness::ResponseLearner* learner, AppearanceCodes* codes) {
+                            brightness::ResponseLearner* learner, AppearanceCodes* codes, RayGradients* rays) {
   StepResult result;
   result.n_rays = static_cast<int>(batch.rays.size());
   result.n_samples = batch.n_samples;
@@ -89,6 +89,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   gain_gradients_.assign(learner != nullptr ? batch.rays.size() : 0, {0.0F, 0.0F, 0.0F});
   if (codes != nullptr && !codes->On()) codes = nullptr;
   code_gradients_.assign(codes != nullptr ? batch.rays.size() * codes->numbers() : 0, 0.0F);
+  if (rays != nullptr) rays->rays.assign(batch.rays.size(), {});
   const float ray_share = 1.0F / static_cast<float>(std::max(1, result.n_rays));
   const PacketStep step{.batch = batch,
                         .weights = field_.Prepare(parameters.networks),
@@ -101,6 +102,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
                         .gain_gradients = gain_gradients_.empty() ? nullptr : gain_gradients_.data(),
                         .codes = codes,
                         .code_gradients = codes != nullptr ? code_gradients_.data() : nullptr,
+                        .ray_gradients = rays,
                         .surface_points = options.priors.Normals() ? surface_points_.data() : nullptr};
   threads_.ParallelFor(kGradientSlots, [&](int64_t slot, int thread) {
     PacketTrainer& trainer = *trainers_[static_cast<size_t>(thread)];

@@ -60,9 +60,9 @@ class FieldStep {
 
   // One step on the batch; overwrites positions of the batch. When the gradients are not finite, parameters and moments stay as they were. Gradients
   // by the photos' gains are added to the learner, which may be null; the caller makes its step. The codes learn too; null or off: every ray has the
-  // code of the mean look.
+  // code of the mean look. rays: where not null, gets the gradient by every ray of the batch.
   StepResult Train(RayBatch& batch, const StepOptions& options, field::Parameters& parameters, field::OptimizerState& state,
-                   brightness::ResponseLearner* learner, AppearanceCodes* codes = nullptr);
+                   brightness::ResponseLearner* learner, AppearanceCodes* codes = nullptr, RayGradients* rays = nullptr);
   // Only density and colour of every sample, for timing.
   void Infer(RayBatch& batch, const field::Parameters& parameters);
   // Running means with luminance; part of the checkpoint.

@@ -13,6 +13,7 @@
 #include "core/render/trained_field.h"
 #include "worker/rays/ray_batch.h"
 #include "worker/step/appearance_codes.h"
+#include "worker/step/ray_gradients.h"
 #include "worker/step/ray_loss.h"
 #include "worker/step/step_priors.h"
 
@@ -41,6 +42,7 @@ struct PacketStep {
   std::array<float, 3>* gain_gradients = nullptr;  // per ray, by its log gains; null without a learner
   const AppearanceCodes* codes = nullptr;          // of the rays' photos; null: every ray has the code of the mean look
   float* code_gradients = nullptr;                 // per ray with codes, as many numbers as a code has; written by the packets with live samples
+  RayGradients* ray_gradients = nullptr;           // with rays of the batch's number, which are written; null: not wanted
   struct SurfacePoints* surface_points = nullptr;  // per packet, written; null without losses of normals
 };
 

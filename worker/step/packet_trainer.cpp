@@ -12,7 +12,7 @@ void KeepIf(bool wanted, std::optional<Part>& part, const PacketShared& shared) 
 }  // namespace
 
 PacketTrainer::PacketTrainer(const PacketShared& shared, PhaseTimes& times, int thread)
-    : shared_(shared), times_(times), thread_(thread), density_(shared), color_(shared) {
+    : shared_(shared), times_(times), thread_(thread), density_(shared), color_(shared), poses_(shared) {
   KeepIf(shared.context != nullptr, context_, shared);
   KeepIf(shared.luminance.On(), concealed_, shared);
   KeepIf(!concealed_, losses_, shared);
@@ -27,6 +27,7 @@ PacketResult PacketTrainer::Train(const PacketStep& step, const Packet& packet, 
   auto at = PhaseTimes::Clock::now();
   ChoosePriors(step.priors);
   samples_.Begin(step, packet, shared_.field);
+  samples_.a.by_direction = step.ray_gradients != nullptr;
   density_.Forward(samples_);
   density_.DropHidden(samples_);
   at = times_.Add(thread_, Phase::kDensity, at);
@@ -67,6 +68,7 @@ bool PacketTrainer::Backward(float* network_gradient, const float* more_geometry
   const size_t stride = samples_.packet->stride;
   shared_.field.Backward(samples_.step->weights, samples_.a, features, stride, samples_.Padded(), network_gradient, more_geometry_gradient);
   color_.SumCodeGradients(samples_);
+  if (samples_.step->ray_gradients != nullptr) poses_.Add(samples_);
   bool finite = true;
   for (int row = 0; row < shared_.field.encoding().OutputRows(); ++row) {
     finite = finite && kernel::AllFinite(features + static_cast<size_t>(row) * stride, samples_.live);

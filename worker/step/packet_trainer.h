@@ -5,7 +5,7 @@
 //   PacketContext     colours in front of and behind the block; only with a context
 //   PacketLosses      losses of rays, with PacketEnds and PacketNormals in steps with such priors; or PacketConcealed with a concealing field
 //   PacketDensity, PacketColor   gradients by the networks' outputs
-// and last the networks' backward pass. What is switched off does not exist.
+// and last the networks' backward pass; after it, where poses are refined, PacketPoses: gradients by the rays. What is switched off does not exist.
 #pragma once
 
 #include <optional>
@@ -19,6 +19,7 @@
 #include "worker/step/packet_ends.h"
 #include "worker/step/packet_losses.h"
 #include "worker/step/packet_normals.h"
+#include "worker/step/packet_poses.h"
 
 namespace skyquilt::worker {
 
@@ -57,6 +58,7 @@ class PacketTrainer {
   PacketSamples samples_;
   PacketDensity density_;
   PacketColor color_;
+  PacketPoses poses_;
   std::optional<PacketContext> context_;
   std::optional<PacketConcealed> concealed_;
   std::optional<PacketLosses> losses_;    // without concealed_

@@ -1,6 +1,7 @@
 #include "prepare/add_photos.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "core/base/file.h"
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
+#include "core/geo/enu_frame.h"
 #include "prepare/check_survey.h"
 #include "prepare/georeference/filter_sparse_points.h"
 #include "prepare/georeference/georeference.h"
@@ -136,6 +138,22 @@ std::vector<input::PreparedPhoto> AppendPhotos(const survey::ColmapModel& model,
   return added;
 }
 
+// For the table of residuals, which was written of the earlier photos alone.
+georeference::Georeference ResidualsOf(const survey::Survey& survey) {
+  georeference::Georeference residuals;
+  const std::optional<geo::EnuFrame> frame = survey.georeferenced ? std::optional<geo::EnuFrame>(survey.origin) : std::nullopt;
+  for (const survey::Photo& photo : survey.photos) {
+    georeference::TagFit& fit = residuals.photos.emplace_back();
+    if (!frame || !photo.gps) continue;
+    geo::Geodetic tag = *photo.gps;
+    const bool has_height = std::isfinite(tag.height_m);
+    if (!has_height) tag.height_m = survey.origin.height_m;
+    fit.residual_m = photo.cam_from_enu.OriginInSource() - frame->EnuFromGeodetic(tag) - photo.gps_correction_m;
+    if (!has_height) fit.residual_m.z() = std::numeric_limits<double>::quiet_NaN();
+  }
+  return residuals;
+}
+
 // The points that an added photo shows.
 void AppendPoints(survey::ColmapModel& model, size_t n_before, int keep_every, survey::Survey& survey) {
   std::unordered_map<std::string, int32_t> index_of;
@@ -226,6 +244,7 @@ survey::Survey AddPhotos(const PrepareInput& input, const EarlierSurvey& earlier
   LogSummary(survey);
   if (!survey.unregistered.empty())
     base::LogWarning("{} photos without a pose are not used: {}", survey.unregistered.size(), input::FewNames(survey.unregistered));
+  WriteResidualTable(survey, ResidualsOf(survey), input.out_folder / "geo_residuals.csv");
   if (survey.georeferenced) WriteCameraMap(survey, input.out_folder / "cameras.geojson");
   survey::SaveSurvey(survey, input.out_folder);
   return survey;

@@ -37,6 +37,11 @@ base::ChildProcess StartDecoding(const FrameRequest& request, double offset_s) {
   std::vector<std::string> arguments = {"-hide_banner", "-nostdin", "-nostats", "-loglevel", "info"};
   if (request.key_frames_only) arguments.insert(arguments.end(), {"-skip_frame", "nokey"});
   if (offset_s > 0.0) arguments.insert(arguments.end(), {"-ss", fmt::format("{:.6f}", offset_s)});
+  // Hours behind the last frame that is wanted would be decoded for nothing.
+  constexpr double kLater_s = 2.0;
+  if (!request.spans.empty() && request.skip_to_spans) {
+    arguments.insert(arguments.end(), {"-t", fmt::format("{:.6f}", request.spans.back().to_s - offset_s + kLater_s)});
+  }
   const std::vector<std::string> input = InputArguments(request.video);
   arguments.insert(arguments.end(), input.begin(), input.end());
   // V: the first video that is no still picture such as a cover.

@@ -4,7 +4,7 @@ import json
 import shutil
 import sys
 
-from harness import HOUSES_WIDTH, SMALL, expect, hamlet, kill_group, main, metrics_of, replaced, wait_for
+from harness import SMALL, expect, hamlet, kill_group, main, metrics_of, replaced, wait_for
 
 SKIPPED = 77
 OPTIONS = replaced(replaced(SMALL, "--blocks", "1x3"), "--steps", "60") + ["--set", "products.ortho=false", "--set", "products.dsm=false"]
@@ -30,7 +30,7 @@ def poses_of(project):
 
 
 def test(skyquilt, folder):
-    west, east = zones_of(skyquilt, hamlet(skyquilt, HOUSES_WIDTH), folder)
+    west, east = zones_of(skyquilt, hamlet(skyquilt, 480), folder)
     project = folder / "project"
     skyquilt.call("run", east, "-o", project, "--add", status=3)
     skyquilt.call("run", west, "-o", project, *OPTIONS)

@@ -4,6 +4,7 @@
 
 #include "core/base/errors.h"
 #include "core/base/file.h"
+#include "core/base/json_text.h"
 
 namespace skyquilt::bench {
 namespace {
@@ -15,8 +16,7 @@ constexpr const char* kForms =
 
 // MatrixCity's files are in pose/BLOCK and name pictures from there.
 bool NamesPicturesFarAway(const fs::path& transforms) {
-  const std::string text = base::ReadFile(transforms);
-  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  const nlohmann::json json = base::TryParseJson(base::ReadFile(transforms));
   if (!json.is_object() || !json.contains("frames") || !json.at("frames").is_array() || json.at("frames").empty()) return false;
   const nlohmann::json& frame = json.at("frames").front();
   return frame.is_object() && frame.value("file_path", nlohmann::json()).is_string() &&

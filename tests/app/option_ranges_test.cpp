@@ -75,13 +75,33 @@ RC_GTEST_PROP(OptionRanges, AValueOutOfRangeIsRefusedBeforeAnyWork, ()) {
 // Every numeric option and every choice has a range; free texts have separate checks.
 TEST(OptionRanges, OnlyTextsAndSwitchesHaveNone) {
   coordinator::Settings settings;
-  const std::set<std::string> free_texts = {
-      "prepare.holdout",      "prepare.colmap",       "prepare.photos",     "prepare.bands",          "prepare.masks",
-      "prepare.geo_file",     "prepare.gcp",          "prepare.gcp_marks",  "prepare.gcp_crs",        "prepare.gcp_columns",
-      "prepare.check_points", "prepare.up",           "prepare.scale_bars", "partition.blocks",       "brightness.correction",
-      "products.exposure",    "products.boundary",    "products.kinds",     "evaluate.lpips_network", "evaluate.normal_photos",
-      "buildings.footprints", "simulate.control_crs", "masks.segment",      "masks.segment_config",   "masks.ignore_ground",
-      "prepare.rig"};
+  const std::set<std::string> free_texts = {"prepare.holdout",
+                                            "prepare.colmap",
+                                            "prepare.photos",
+                                            "prepare.bands",
+                                            "prepare.masks",
+                                            "prepare.geo_file",
+                                            "prepare.gcp",
+                                            "prepare.gcp_marks",
+                                            "prepare.gcp_crs",
+                                            "prepare.gcp_columns",
+                                            "prepare.check_points",
+                                            "prepare.up",
+                                            "prepare.scale_bars",
+                                            "partition.blocks",
+                                            "brightness.correction",
+                                            "products.exposure",
+                                            "products.boundary",
+                                            "products.kinds",
+                                            "evaluate.lpips_network",
+                                            "evaluate.normal_photos",
+                                            "buildings.footprints",
+                                            "simulate.control_crs",
+                                            "masks.segment",
+                                            "masks.segment_config",
+                                            "masks.ignore_ground",
+                                            "prepare.rig",
+                                            "merge.look"};
   for (const Described& one : AllOptions(settings)) {
     if (std::holds_alternative<bool*>(one.option.value) || free_texts.contains(one.key)) continue;
     EXPECT_NE(one.option.range.Text(), "") << one.key;

@@ -97,5 +97,22 @@ TEST(TrainOptions, TakeCodesOfUpTo32Numbers) {
   EXPECT_NE(Refusal(options).find("train.appearance_of"), std::string::npos);
 }
 
+TEST(TrainOptions, RefinePosesOnlyWithAnEncodingThatHasSlopes) {
+  TrainOptions options;
+  EXPECT_FALSE(options.refine_poses);
+  options.refine_poses = true;
+  for (const char* encoding : {"hash", "voxels", "planes", "frequency"}) {
+    options.encoding = encoding;
+    const bool has_slopes = options.encoding == "hash" || options.encoding == "voxels";
+    EXPECT_EQ(Refusal(options).empty(), has_slopes) << encoding;
+    if (!has_slopes) {
+      EXPECT_NE(Refusal(options).find("train.refine_poses"), std::string::npos) << Refusal(options);
+    }
+  }
+  options.encoding = "hash";
+  options.pose_sigma_px = 0.0;
+  EXPECT_NE(Refusal(options, "context").find("context.pose_sigma_px"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace skyquilt::worker

@@ -14,8 +14,9 @@ namespace {
 // Course of the rate, by the share of the budget: rises from kBegin to kFullRate, falls geometrically from kFallFrom on.
 constexpr double kFullRate = 0.15, kFallFrom = 0.4, kLastRateShare = 0.05;
 constexpr double kBeta1 = 0.9, kBeta2 = 0.99, kEpsilon = 1e-15;
-// Of an offset of one sigma. About a twentieth of what a pixel of misplacement costs, so that the prior decides only where photos say little.
-constexpr double kPriorLoss = 1e-4;
+// Of an offset of one sigma; by trials (docs/benchmarks.md). With a sigma of 2 pixels it is about a tenth of what a pixel of misplacement costs, so
+// that the prior decides only where photos say little.
+constexpr double kPriorLoss = 8e-4;
 // Enough sparse points to tell how far away photos look.
 constexpr size_t kPointsToTry = 2000, kFewestPoints = 10;
 

@@ -46,7 +46,8 @@ TEST(RefinedPoses, MoveOnlyTrainingPhotosThatAreNamed) {
 }
 
 TEST(RefinedPoses, AreReadAsTheyWereWritten) {
-  const TemporaryFolder folder;
+  const TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary / "survey";
   EXPECT_FALSE(LoadRefinedPoses(folder).has_value());
   const Survey survey = ThreePhotos();
   const RefinedPoses poses = TwoOffsets();
@@ -74,7 +75,8 @@ TEST(RefinedPoses, AreReadAsTheyWereWritten) {
 }
 
 TEST(RefinedPoses, OfADamagedFileAreRefused) {
-  const TemporaryFolder folder;
+  const TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary / "survey";
   SaveRefinedPoses(TwoOffsets(), ThreePhotos(), folder);
   const std::filesystem::path file = RefinedPosesFolder(folder) / "poses.json";
   const std::string good = base::ReadFile(file);

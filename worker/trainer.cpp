@@ -134,7 +134,9 @@ TrainResult TrainContext(const TrainJob& job, const BlockSpec& area, base::Threa
     none.reason = "no training photo sees the survey area; check the poses in the survey";
     return none;
   }
-  if (GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads)) learner.Freeze();
+  const KnownFromTiePoints known = GainsFromTiePoints(*job.survey, *job.pixels, source, job.learn, response, threads);
+  if (known.gains) learner.Freeze();
+  if (known.shading) learner.shading().Freeze();
   source.UpdateExposures();
   render::TrainedField target = MakeTarget(job, area, true, job.luminance, response, learner.active(), PriorOptions::Off());
   const LuminancePlan luminance{job.luminance, {job.luminance.target, job.luminance.start_log_gain}, true};

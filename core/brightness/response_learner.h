@@ -39,7 +39,7 @@ class ResponseLearner {
   ResponseLearner(Response& response, const LearnerOptions& options);
 
   // Whether gains or shading are learned while the field trains.
-  bool active() const { return LearnsGains() || shading_.On(); }
+  bool active() const { return LearnsGains() || shading_.Learns(); }
   bool LearnsGains() const { return active_ && !frozen_; }
   // Gradients of shading are added to it.
   ShadingLearner& shading() { return shading_; }
@@ -48,7 +48,7 @@ class ResponseLearner {
   // One Adam step with the gradients added since the last step. progress: of the training, 0..1, sets the learning rate. Photos whose gradient is not
   // finite keep their gains.
   void Step(double progress);
-  // Freezes the gains: call it when tie points have given better gains than an unfinished field could. Shading learns on.
+  // Freezes the gains: call it when tie points have given better gains than an unfinished field could. Shading is frozen by itself.
   void Freeze() { frozen_ = true; }
 
   // Adam's state.

@@ -37,7 +37,7 @@ void ShadingLearner::Add(size_t photo, const PicturePlace& place, float gradient
 }
 
 void ShadingLearner::Step(double progress, Moments& moments) {
-  if (!On()) return;
+  if (!Learns()) return;
   const bool learns = progress >= kLearnFrom;
   const double passed = std::clamp((progress - kLearnFrom) / (1.0 - kLearnFrom), 0.0, 1.0);
   const auto rate = static_cast<float>(kRate * std::pow(kLastRate / kRate, passed));
@@ -76,14 +76,16 @@ ShadingLearner::Moments ShadingLearner::EmptyMoments() const {
 
 void ShadingLearner::Put(const Moments& moments, checkpoint::ArchiveWriter& writer) const {
   if (!On()) return;
+  writer.SetAttribute("shading_frozen", frozen_ ? 1 : 0);
   writer.Put("learner/shading_moment1", moments.first);
   writer.Put("learner/shading_moment2", moments.second);
   writer.Put("learner/shading_steps", moments.steps);
 }
 
-void ShadingLearner::Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, Moments& moments) const {
+void ShadingLearner::Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, Moments& moments) {
   if (!On()) return;
   const auto take = [&](auto& to, const auto& from, const char* name) { checkpoint::TakeArray(from, name, file, "survey", to); };
+  frozen_ = reader.IntAttribute("shading_frozen") != 0;
   take(moments.first, reader.Floats("learner/shading_moment1"), "learner/shading_moment1");
   take(moments.second, reader.Floats("learner/shading_moment2"), "learner/shading_moment2");
   take(moments.steps, reader.Ints("learner/shading_steps"), "learner/shading_steps");

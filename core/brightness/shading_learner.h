@@ -24,6 +24,9 @@ class ShadingLearner {
   ShadingLearner(Response& response, ShadingOptions options);
 
   bool On() const { return options_.On(); }
+  bool Learns() const { return On() && !frozen_; }
+  // From then on shading stays as it is: call it when tie points have given it.
+  void Freeze() { frozen_ = true; }
   // Adds the gradient of one pixel: d loss / d log light, summed over its colours. weight: the pixel's share of the loss, 1 / rays of the batch.
   void Add(size_t photo, const PicturePlace& place, float gradient, float weight);
   // One step with the gradients added since the last one, and the projection after it. progress: of the training, 0..1. Photos without pixels in this
@@ -37,13 +40,14 @@ class ShadingLearner {
   // Writes the moments under "learner/"; nothing without shading.
   void Put(const Moments& moments, checkpoint::ArchiveWriter& writer) const;
   // Throws base::InputError when the file has other sizes.
-  void Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, Moments& moments) const;
+  void Get(const checkpoint::ArchiveReader& reader, const std::filesystem::path& file, Moments& moments);
 
  private:
   void Update(size_t photo, float rate, Moments& moments);
 
   Response& response_;
   ShadingOptions options_;
+  bool frozen_ = false;
   std::vector<double> gradient_;  // of this step, [photo][knot]
   std::vector<double> weight_;    // per photo: sum of the weights of this step's pixels
 };

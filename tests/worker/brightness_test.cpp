@@ -52,7 +52,7 @@ class BrightnessTest : public SmallSurvey {
     brightness::Response response = job.response;
     const RaySource source(survey_, *pixels_, response);
     base::ThreadPool threads(2);
-    const bool known = GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads);
+    const bool known = GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads).gains;
     if (complete != nullptr) *complete = known;
     return response;
   }

@@ -95,7 +95,9 @@ TEST_F(ShadingTest, TiePointsGiveTheShading) {
   brightness::Response response = job.response;
   const RaySource source(survey_, *pixels_, response);
   base::ThreadPool threads(2);
-  EXPECT_TRUE(GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads));
+  const KnownFromTiePoints known = GainsFromTiePoints(survey_, *pixels_, source, job.learn, response, threads);
+  EXPECT_TRUE(known.gains);
+  EXPECT_TRUE(known.shading);
   const auto [error, all] = RmsStops(response);
   EXPECT_GT(all, 0.4);
   // Light that bends over the whole survey cannot be told from shadings that change evenly from photo to photo: there the prior decides.

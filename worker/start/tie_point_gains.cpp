@@ -18,6 +18,7 @@ constexpr size_t kFewestPoints = 12'000, kPointsOfPhoto = 12;
 constexpr size_t kPointsOfShadedPhoto = 60;  // shading needs some in every part of a photo
 constexpr int kPointReach = 1;               // pixels on each side of a point's pixel that are averaged
 constexpr int kFewestSightings = 8;          // points per photo: with fewer its gain is not estimated
+constexpr size_t kSightingsOfKnot = 4;       // points per knot of a photo: with fewer its shading is learned in training, too
 constexpr int kRounds = 6;                   // of reweighting
 constexpr int kShadedRounds = 12;            // the same with shading: gains and shading are solved in turns
 constexpr int kMostSteps = 200;              // of conjugate gradients
@@ -263,11 +264,24 @@ bool KeepGains(const std::array<Eigen::VectorXd, 3>& gains, std::span<const Sigh
   return !sightings.empty() && known >= kNearlyAll * wanted;
 }
 
+// Whether nearly all photos have enough points.
+bool ShadingIsKnown(std::span<const Sighting> sightings, const brightness::ShadingOptions& shading) {
+  std::vector<size_t> count(shading.learns.size(), 0);
+  for (const Sighting& s : sightings) ++count[static_cast<size_t>(s.photo)];
+  size_t wanted = 0, known = 0;
+  for (size_t i = 0; i < count.size(); ++i) {
+    if (shading.learns[i] == 0) continue;
+    ++wanted;
+    if (count[i] >= kSightingsOfKnot * shading.grid.knots()) ++known;
+  }
+  return static_cast<double>(known) >= kNearlyAll * static_cast<double>(wanted);
+}
+
 }  // namespace
 
-bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
-                        const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads) {
-  if (!learn.Gains() && !learn.vignetting && !learn.shading.On()) return false;
+KnownFromTiePoints GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
+                                      const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads) {
+  if (!learn.Gains() && !learn.vignetting && !learn.shading.On()) return {};
   const std::vector<Sighting> sightings = FindSightings(survey, pixels, source, response, threads);
   const auto n = static_cast<Eigen::Index>(survey.photos.size());
   std::array<Eigen::VectorXd, 3> gains;
@@ -307,7 +321,8 @@ bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& p
     if (shades) SolveShading(WithoutOtherFactors(sightings, weight, gains, response), learn.shading, response);
     scatter = std::max(kScatter, kScatterShrinks * scatter);
   }
-  return KeepGains(gains, sightings, learn, response);
+  const bool known = KeepGains(gains, sightings, learn, response);
+  return {known, shades && ShadingIsKnown(sightings, learn.shading)};
 }
 
 }  // namespace skyquilt::worker

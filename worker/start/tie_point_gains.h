@@ -17,8 +17,13 @@ namespace skyquilt::worker {
 // Sets response.log_gain of the photos that learn their gain (learn.learns_gain), response.vignetting when learn.vignetting is true, and
 // response.shading with learn.shading. The other
 // photos keep their gains and fix the common factor; when learn.anchored is false, the mean log gain is zero. Photos with fewer than 8 usable points
-// keep their gains. Returns true when at least 95 % of the photos that learn have enough points, so that training need not learn gains.
-bool GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
-                        const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads);
+// keep their gains. What is known need not be learned in training: gains when at least 95 % of the photos that learn have enough points, shading when
+// as many of them have four points per knot.
+struct KnownFromTiePoints {
+  bool gains = false;
+  bool shading = false;
+};
+KnownFromTiePoints GainsFromTiePoints(const survey::Survey& survey, const image::PixelCache& pixels, const RaySource& source,
+                                      const brightness::LearnerOptions& learn, brightness::Response& response, base::ThreadPool& threads);
 
 }  // namespace skyquilt::worker

@@ -121,7 +121,7 @@ StepResult FieldStep::Train(RayBatch& batch, const StepOptions& options, field::
   }
   ClipNetworkGradient(state, result);
   UpdateRunningMeans(sums);
-  const bool shades = learner != nullptr && learner->shading().On();
+  const bool shades = learner != nullptr && learner->shading().Learns();
   for (size_t k = 0; k < gain_gradients_.size(); ++k) {
     const PixelRay& ray = batch.rays[k].ray;
     if (ray.empty) continue;

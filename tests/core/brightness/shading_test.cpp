@@ -193,6 +193,22 @@ TEST(ShadingLearner, FindsShadingAndResumesWithTheSameBits) {
   EXPECT_EQ(resumed.shading, whole.shading);
 }
 
+TEST(ShadingLearner, IsFrozenApartFromGains) {
+  Response response = Response::Neutral(2, 1);
+  response.AddShading(kGrid, 0.5F);
+  LearnerOptions options = ShadesTwo(kGrid);
+  options.learns_gain = {1, 1};
+  ResponseLearner learner(response, options);
+  learner.Freeze();
+  EXPECT_TRUE(learner.active());
+  EXPECT_FALSE(learner.LearnsGains());
+  learner.shading().Freeze();
+  EXPECT_FALSE(learner.active());
+  learner.shading().Add(0, {0.2F, 0.2F}, 0.1F, 0.5F);
+  learner.Step(0.5);
+  for (const float value : response.shading) EXPECT_EQ(value, 0.0F);
+}
+
 TEST(ShadingLearner, LearnsNothingWhileTheFieldIsUnknownNorFromWhatIsNotFinite) {
   Response response = Response::Neutral(2, 1);
   response.AddShading(kGrid, 0.5F);

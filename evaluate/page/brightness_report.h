@@ -20,7 +20,7 @@ struct BrightnessPhoto {
   bool held_out = false;
   double exif_stops = 0.0;                                // from the tags
   std::array<double, 3> learned_stops = {0.0, 0.0, 0.0};  // added to exif_stops, per colour; predicted for held-out photos
-  std::vector<float> shading_stops;                       // [row][column] of BrightnessReport::shading_grid; empty for held-out photos
+  std::vector<float> shading_stops = {};                  // [row][column] of BrightnessReport::shading_grid; empty for held-out photos
 };
 
 // Images of one held-out photo; paths relative to the page.

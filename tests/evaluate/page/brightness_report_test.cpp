@@ -140,6 +140,18 @@ TEST(CollectBrightness, TellsVignettingAndConcealingField) {
   EXPECT_NE(report.luminance.find("2.00"), std::string::npos);
 }
 
+TEST(CollectBrightness, ListsTheShadingOfTrainingPhotosInStops) {
+  SlopeSurvey small({0.0, 0.0});
+  small.info.response.AddShading({2, 2}, 0.3F);
+  small.info.response.shading = {std::log(2.0F), 0.0F, -std::log(2.0F), 0.0F, 0.0F, 0.0F, 0.0F, 0.0F};
+  const BrightnessReport report = small.Collect();
+  const std::vector<float> wanted = {1.0F, 0.0F, -1.0F, 0.0F};
+  ASSERT_EQ(report.photos[0].shading_stops.size(), wanted.size());
+  for (size_t k = 0; k < wanted.size(); ++k) EXPECT_NEAR(report.photos[0].shading_stops[k], wanted[k], 1e-5F);
+  const std::string json = BrightnessJson(report);
+  EXPECT_NE(json.find("shading_stops\": [\n"), std::string::npos);
+}
+
 TEST(CollectBrightness, IsEmptyForASceneOfOtherPhotos) {
   SlopeSurvey small({0.0, 0.0});
   small.info.response = brightness::Response::Neutral(3, 1);

@@ -243,6 +243,21 @@ TEST_F(ReportPage, BrightnessOfOnePhotoThatLearnedNothing) {
   EXPECT_EQ(section.find("nan"), std::string::npos);
 }
 
+TEST_F(ReportPage, ShowsTheShadingOfPhotosAsSmallPictures) {
+  BrightnessReport shaded;
+  shaded.shading_grid = {3, 2};
+  shaded.photos.push_back({"dark <left>.jpg", 0, 0.0, false, 0.0, {}, {-0.5F, 0.0F, 0.5F, -0.5F, 0.0F, 0.5F}});
+  shaded.photos.push_back({"held_out.jpg", 0, 1.0, true, 0.0, {}});
+  ReportInput input = sample_->input;
+  input.brightness = &shaded;
+  const std::string section = BrightnessSection(input);
+  EXPECT_EQ(CountOf(section, "<rect x="), 6U);  // held-out photos have none
+  EXPECT_NE(section.find("dark &lt;left&gt;.jpg: -0.50 to +0.50 stops"), std::string::npos);
+  EXPECT_NE(section.find("Light within the photos"), std::string::npos);
+  shaded.shading_grid = {};
+  EXPECT_EQ(BrightnessSection(input).find("Light within the photos"), std::string::npos);
+}
+
 TEST_F(ReportPage, LongPausesDoNotSqueezeTheFlights) {
   BrightnessReport two_days;
   two_days.timed = true;

@@ -25,7 +25,7 @@ TEST(FaultOptions, TheFileShowsAllOfThemAndTurnsNoneOn) {
     EXPECT_EQ(written.find(line) != std::string::npos, !is_fault) << option.key;
     lines += is_fault ? 1U : 0U;
   }
-  EXPECT_EQ(lines, 17U);
+  EXPECT_EQ(lines, 19U);
 }
 
 }  // namespace

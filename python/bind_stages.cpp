@@ -16,7 +16,7 @@ namespace {
 
 namespace py = pybind11;
 
-void CallFromPython(const std::string& stage, const std::filesystem::path& folder, const std::filesystem::path& photos,
+void CallFromPython(const std::string& stage, const std::filesystem::path& folder, const std::vector<std::string>& photos,
                     const std::filesystem::path& model, const std::string& config, const std::vector<std::pair<std::string, std::string>>& options,
                     bool restart, bool quiet, bool verbose, const py::object& progress) {
   StageCall call{.stage = stage, .folder = folder, .photos = photos, .model = model, .choice = {.config = config}};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coordinator/stages/level_settings.h"
+#include "coordinator/stages/photo_inputs.h"
 #include "coordinator/stages/pipeline.h"
 #include "coordinator/stages/stage.h"
 #include "coordinator/stages/timed_run.h"
@@ -79,23 +80,27 @@ void Simulate(comm::Communicator& comm, const StageCall& call) {
 
 void Prepare(comm::Communicator& comm, const StageCall& call) {
   coordinator::Settings settings = app::ChosenSettings({}, call.choice);
+  std::vector<std::filesystem::path> videos = coordinator::VideosAmong(call.photos);
   coordinator::Pipeline pipeline = PipelineOf(comm, call, coordinator::Project::Create(call.folder), std::move(settings));
   const base::LogFile log(pipeline.project.LogFile());
   pipeline.level_settings = app::ChosenForLevelPhotos(call.choice);
-  coordinator::PrepareStage(pipeline, call.photos, call.model);
+  pipeline.videos = std::move(videos);
+  coordinator::PrepareStage(pipeline, coordinator::PhotoFolderOf(call.photos, pipeline.project), call.model);
 }
 
 void Run(comm::Communicator& comm, const StageCall& call) {
   coordinator::Settings settings = app::ChosenSettings({}, call.choice);
-  coordinator::RequireInputs(settings, call.photos, call.model);
+  std::vector<std::filesystem::path> videos = coordinator::VideosAmong(call.photos);
+  coordinator::RequireInputs(settings, call.photos.empty() || !videos.empty() ? std::string() : call.photos.front(), call.model);
   RequireNoTour(settings);
   coordinator::Pipeline pipeline = PipelineOf(comm, call, coordinator::Project::Create(call.folder), std::move(settings));
   const base::LogFile log(pipeline.project.LogFile());
   pipeline.level_settings = app::ChosenForLevelPhotos(call.choice);
+  pipeline.videos = std::move(videos);
   coordinator::UseTotalTime(pipeline);
   coordinator::RecallLevelSettings(pipeline);
   coordinator::RequireSameConfiguration(pipeline, "prepare");
-  coordinator::RunStages(pipeline, call.photos, call.model);
+  coordinator::RunStages(pipeline, coordinator::PhotoFolderOf(call.photos, pipeline.project), call.model);
   coordinator::ThrowIfBlocksFailed(pipeline.training, pipeline.project);
 }
 

@@ -11,8 +11,6 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/text.h"
-#include "prepare/input/zones.h"
-#include "prepare/video/find_videos.h"
 #include "viewer/tour_parts.h"
 
 namespace skyquilt::app {
@@ -134,27 +132,6 @@ void AddControlFlags(CLI::App& command, const Overrides& overrides) {
 void AddPhotosArgument(CLI::App& command, std::vector<std::string>& photos) {
   command.add_option("photos", photos, "folder with photos or videos, several folders of photos, video files, or a simulated survey")
       ->type_name("FOLDER...|VIDEO...");
-}
-
-std::vector<std::filesystem::path> ZonesAmong(const std::vector<std::string>& photos) {
-  std::vector<std::filesystem::path> zones(photos.begin(), photos.end());
-  const bool folders = std::all_of(zones.begin(), zones.end(), [](const auto& zone) { return std::filesystem::is_directory(zone); });
-  if (!folders || zones.size() < 2) zones.clear();
-  return zones;
-}
-
-std::vector<std::filesystem::path> VideosAmong(const std::vector<std::string>& photos) {
-  const std::vector<std::filesystem::path> inputs(photos.begin(), photos.end());
-  // What a folder holds is looked at when it is read.
-  if (inputs.size() == 1 && std::filesystem::is_directory(inputs.front())) return {};
-  if (!ZonesAmong(photos).empty()) return {};
-  return inputs.empty() ? inputs : prepare::video::FindVideos(inputs);
-}
-
-std::filesystem::path PhotoFolderOf(const std::vector<std::string>& photos, const coordinator::Project& project) {
-  const std::vector<std::filesystem::path> zones = ZonesAmong(photos);
-  if (!zones.empty()) return prepare::input::LinkZones(zones, project.ZonesFolder());
-  return photos.empty() ? std::filesystem::path() : std::filesystem::path(photos.front());
 }
 
 void AddAddFlag(CLI::App& command, bool& add) {

@@ -61,19 +61,12 @@ void AddModelFlag(CLI::App& command, std::string& model);
 void AddControlFlags(CLI::App& command, const Overrides& overrides);
 // The input of `prepare` and `run`: a folder of photos or of videos, several folders of photos, or video files.
 void AddPhotosArgument(CLI::App& command, std::vector<std::string>& photos);
-// These when they are several folders, else none.
-std::vector<std::filesystem::path> ZonesAmong(const std::vector<std::string>& photos);
-// Videos among these, for Pipeline::videos; empty for folders. Throws base::InputError when nothing is there, base::UsageError for a folder beside
-// videos.
-std::vector<std::filesystem::path> VideosAmong(const std::vector<std::string>& photos);
-// The folder of the photos; of several folders one with links to them, in the project (prepare/input/zones.h). Not used for videos.
-std::filesystem::path PhotoFolderOf(const std::vector<std::string>& photos, const coordinator::Project& project);
 // --add: the photos are added to those of a finished project (coordinator/stages/addition.h).
 void AddAddFlag(CLI::App& command, bool& add);
 // Settings of the project, changed by the flags, for --add. Throws base::UsageError for flags that cannot go with it.
 coordinator::Settings SettingsToAdd(const CommandState& state, const coordinator::Project& project, const std::vector<config::Override>& flags,
                                     const std::string& model, bool restart);
-// PhotoFolderOf for --add. Throws base::UsageError for what is no folder.
+// The folder of all photos for --add. Throws base::UsageError for what is no folder.
 std::filesystem::path FolderWithAdded(const coordinator::Project& project, const std::vector<std::string>& photos);
 // --video-limit.
 void AddVideoFlags(CLI::App& command, const Overrides& overrides);

@@ -9,6 +9,7 @@
 #include "coordinator/planning/measure_rates.h"
 #include "coordinator/planning/needs.h"
 #include "coordinator/planning/plan_text.h"
+#include "coordinator/stages/photo_inputs.h"
 #include "coordinator/stages/timed_run.h"
 #include "core/base/amounts.h"
 #include "core/base/errors.h"
@@ -38,7 +39,7 @@ class PhotosToPlan {
       throw base::InputError(folder, "no such folder",
                              "Give the folder that holds the photos; of videos, 'skyquilt prepare VIDEO -o DIR' makes photos in DIR/survey/frames");
     }
-    const std::vector<std::filesystem::path> zones = ZonesAmong(photos);
+    const std::vector<std::filesystem::path> zones = coordinator::ZonesAmong(photos);
     folder_ = zones.empty() ? std::filesystem::path(photos.front()) : prepare::input::LinkZones(zones, links_);
   }
   ~PhotosToPlan() {

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/command.h"
+#include "coordinator/stages/photo_inputs.h"
 
 namespace skyquilt::app {
 
@@ -51,11 +52,11 @@ void AddPrepare(CLI::App& app, CommandState& state) {
         return;
       }
       coordinator::Settings settings = state.Load({}, *overrides);
-      std::vector<std::filesystem::path> videos = VideosAmong(flags->photos);
+      std::vector<std::filesystem::path> videos = coordinator::VideosAmong(flags->photos);
       coordinator::Pipeline pipeline = state.Begin(coordinator::Project::Create(flags->out), std::move(settings), flags->restart);
       pipeline.level_settings = state.LoadForLevelPhotos(*overrides);
       pipeline.videos = std::move(videos);
-      coordinator::PrepareStage(pipeline, PhotoFolderOf(flags->photos, pipeline.project), flags->model);
+      coordinator::PrepareStage(pipeline, coordinator::PhotoFolderOf(flags->photos, pipeline.project), flags->model);
     };
   });
 }

@@ -2,6 +2,7 @@
 
 #include "app/commands/command.h"
 #include "coordinator/stages/level_settings.h"
+#include "coordinator/stages/photo_inputs.h"
 #include "coordinator/stages/stage.h"
 #include "coordinator/stages/timed_run.h"
 #include "core/base/errors.h"
@@ -39,7 +40,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   }
   coordinator::Settings settings = state.Load({}, overrides);
   // Checked before the output folder is created and before hours of work.
-  std::vector<std::filesystem::path> videos = VideosAmong(flags.photos);
+  std::vector<std::filesystem::path> videos = coordinator::VideosAmong(flags.photos);
   const std::string first = flags.photos.empty() || !videos.empty() ? std::string() : flags.photos.front();
   coordinator::RequireInputs(settings, first, flags.model);
   if (coordinator::StageNamed("tour").wanted(settings)) viewer::TourPage(state.front_end);
@@ -48,7 +49,7 @@ void Run(const CommandState& state, const RunFlags& flags, const std::vector<con
   pipeline.videos = std::move(videos);
   coordinator::UseTotalTime(pipeline);
   coordinator::RecallLevelSettings(pipeline);
-  Finish(pipeline, PhotoFolderOf(flags.photos, pipeline.project), flags.model);
+  Finish(pipeline, coordinator::PhotoFolderOf(flags.photos, pipeline.project), flags.model);
 }
 
 }  // namespace

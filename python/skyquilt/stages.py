@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import os
 import pathlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from . import _skyquilt
@@ -27,20 +27,24 @@ from .errors import UsageError
 from .project import Project
 
 PathLike = str | os.PathLike[str]
+Photos = PathLike | Sequence[PathLike]
 Progress = Callable[[str, float], object]
 
 
-def _call(stage: str, folder: PathLike, photos: PathLike | None, model: PathLike | None, config: PathLike | None, restart: bool, quiet: bool,
+def _call(stage: str, folder: PathLike, photos: Photos | None, model: PathLike | None, config: PathLike | None, restart: bool, quiet: bool,
           verbose: bool, progress: Progress | None, options: dict[str, Any]) -> None:
     if progress is not None and not callable(progress):
         raise UsageError(f"progress must be a function of a label and a share, not {type(progress).__name__}")
-    photos_, model_, config_ = ("" if path is None else os.fspath(path) for path in (photos, model, config))
+    inputs = [] if photos is None else [photos] if isinstance(photos, (str, os.PathLike)) else photos
+    photos_ = [os.fspath(path) for path in inputs]
+    model_, config_ = ("" if path is None else os.fspath(path) for path in (model, config))
     _skyquilt.call_stage(stage, os.fspath(folder), photos_, model_, config_, overrides(stage, options), bool(restart), bool(quiet), bool(verbose), progress)
 
 
-def run(photos: PathLike | None, out: PathLike, *, place: str | None = None, model: PathLike | None = None, config: PathLike | None = None,
+def run(photos: Photos | None, out: PathLike, *, place: str | None = None, model: PathLike | None = None, config: PathLike | None = None,
         restart: bool = False, quiet: bool = False, verbose: bool = False, progress: Progress | None = None, **options: Any) -> Project:
     """All stages, from photos to scene, map products and report, into the project folder `out`; with photos=None of the simulated `place`.
+    photos: a folder of photos or of videos, or a list of several folders (flights, zones) or of video files.
     model: the photos' camera model; without it COLMAP is run. Flags: within, time_budget, steps, blocks, image_width, holdout, ... (`skyquilt run`)."""
     if (photos is None) == (place is None):
         raise UsageError("skyquilt.run needs either a folder with photos or place='NAME', not both")
@@ -59,9 +63,10 @@ def simulate(place: str, out: PathLike, *, config: PathLike | None = None, resta
     return pathlib.Path(out)
 
 
-def prepare(photos: PathLike, out: PathLike, *, model: PathLike | None = None, config: PathLike | None = None, restart: bool = False,
+def prepare(photos: Photos, out: PathLike, *, model: PathLike | None = None, config: PathLike | None = None, restart: bool = False,
             quiet: bool = False, verbose: bool = False, progress: Progress | None = None, **options: Any) -> Project:
-    """A geo-referenced survey of photos, in the project folder `out`. Flags: gcp, check_points, up, scale_bars (a list), holdout, masks."""
+    """A geo-referenced survey of photos, in the project folder `out`. photos: as for `run`. Flags: gcp, check_points, up, scale_bars (a list), holdout,
+    masks."""
     _call("prepare", out, photos, model, config, restart, quiet, verbose, progress, options)
     return Project(out)
 

@@ -94,6 +94,10 @@ class Stages(InFolder):
         with self.assertRaisesRegex(skyquilt.UsageError, "holdout"):
             skyquilt.prepare(made, one.folder, holdout="every:4", **QUIET)
         again = skyquilt.prepare(made, one.folder, holdout="every:4", restart=True, **QUIET)
+        with self.assertRaisesRegex(skyquilt.InputError, "no such"):
+            skyquilt.prepare([made, self.folder / "nothing"], self.folder / "two", **QUIET)
+        with self.assertRaisesRegex(skyquilt.UsageError, "twice"):
+            skyquilt.prepare([made, made], self.folder / "two", **QUIET)
         self.assertEqual(int(again.survey.held_out.sum()), -(-len(again.survey) // 4))
 
     def test_one_stage_at_a_time(self):

@@ -61,7 +61,7 @@ void KeepAll(const Project& project) {
   }
   base::WriteFileAtomically(made.CheckpointIdentities(), base::JsonText(identities, 1) + "\n");
   fs::remove_all(before.folder);
-  fs::rename(made.folder, before.folder);
+  base::Rename(made.folder, before.folder);
 }
 
 }  // namespace

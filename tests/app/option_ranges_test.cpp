@@ -101,6 +101,7 @@ TEST(OptionRanges, OnlyTextsAndSwitchesHaveNone) {
                                             "masks.segment_config",
                                             "masks.ignore_ground",
                                             "prepare.rig",
+                                            "brightness.shading_grid",
                                             "merge.look"};
   for (const Described& one : AllOptions(settings)) {
     if (std::holds_alternative<bool*>(one.option.value) || free_texts.contains(one.key)) continue;

@@ -10,9 +10,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
-#include "core/base/progress.h"
-#include "prepare/bundle/adjust_bundle.h"
-#include "prepare/bundle/feature_tracks.h"
+#include "prepare/bundle/adjust_rounds.h"
 #include "prepare/bundle/triangulate.h"
 #include "prepare/poses/colmap_run.h"
 #include "prepare/poses/join_parts.h"
@@ -31,9 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kLeastKnown = 3;     // photos that a part must have in common with the survey to be laid on it
-constexpr size_t kPerPhoto = 640;     // observations in the adjustment, as in the seeding
 constexpr double kFocalSigma = 0.01;  // relative: what was found without holding the survey is near
-constexpr double kFinal = 4.0;        // pixels of a photo of 1600 pixels width, as in the seeding
 
 // Marks all photos that have a pair with a marked one.
 void MarkPartners(const PhotoPairs& pairs, std::vector<char>& marked) {
@@ -177,26 +173,8 @@ size_t RemoveLost(bundle::BundleProblem& bundle, base::ThreadPool& threads) {
     photo.placed = false;
     ++n_lost;
   }
-  if (n_lost > 0) bundle::TriangulateAll(bundle, kFinal, threads);
+  if (n_lost > 0) bundle::TriangulateAll(bundle, bundle::kFinalThreshold, threads);
   return n_lost;
-}
-
-bool Adjust(bundle::BundleProblem& bundle, base::ThreadPool& threads) {
-  struct Round {
-    double threshold, tolerance;
-  };
-  constexpr Round kRounds[] = {{10.0, 1e-4}, {6.0, 1e-5}, {kFinal, 1e-6}};
-  constexpr int kIterations = 30;
-  base::Progress progress("adjust added photos", static_cast<double>(std::size(kRounds)) * kIterations, "iterations");
-  for (const Round& round : kRounds) {
-    bundle::TriangulateAll(bundle, round.threshold, threads);
-    const std::vector<uint32_t> chosen = bundle::ChooseTracks(bundle, bundle.has_point, bundle.agrees, kPerPhoto);
-    const bundle::BundleStage stage{.loss = 1.0, .max_iterations = kIterations, .tolerance = round.tolerance};
-    if (!bundle::AdjustBundle(bundle, chosen, stage, [&] { progress.Advance(); })) return false;
-  }
-  progress.Finish();
-  bundle::TriangulateAll(bundle, kFinal, threads);
-  return true;
 }
 
 // To all verified matches of the database. The model stays what it is where there is no such adjustment.
@@ -211,7 +189,7 @@ void AdjustAdded(const ColmapJob& job, const std::vector<input::PhotoFile>& phot
     return;
   }
   FillTracks(*input, *bundle);
-  if (!Adjust(*bundle, threads)) {
+  if (!bundle::AdjustInRounds(*bundle, "adjust added photos", threads)) {
     base::LogWarning("the adjustment of the added photos found no solution: they stay where they were laid on the survey");
     return;
   }

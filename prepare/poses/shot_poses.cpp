@@ -12,9 +12,7 @@
 #include "core/base/errors.h"
 #include "core/base/log.h"
 #include "core/base/order_statistics.h"
-#include "core/base/progress.h"
-#include "prepare/bundle/adjust_bundle.h"
-#include "prepare/bundle/feature_tracks.h"
+#include "prepare/bundle/adjust_rounds.h"
 #include "prepare/bundle/shots.h"
 #include "prepare/bundle/triangulate.h"
 #include "prepare/poses/seed/bundle_model.h"
@@ -26,9 +24,6 @@ namespace skyquilt::prepare::poses {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr size_t kPerPhoto = 640;  // observations in the adjustment, as in the seeding
-constexpr int kIterations = 30;
 
 camera::Camera ExactCamera(int width, int height, double focal_px) {
   return {camera::CameraModel::kPinhole, width, height, {focal_px, focal_px, 0.5 * width, 0.5 * height}};
@@ -113,24 +108,6 @@ void HoldFrame(bundle::BundleProblem& bundle) {
   }
 }
 
-bool AdjustRigs(bundle::BundleProblem& bundle, base::ThreadPool& threads) {
-  struct Round {
-    double threshold, tolerance;
-  };
-  constexpr Round kRounds[] = {{10.0, 1e-4}, {6.0, 1e-5}, {4.0, 1e-6}};
-  base::Progress progress("adjust rigs", static_cast<double>(std::size(kRounds)) * kIterations, "iterations");
-  for (const Round& round : kRounds) {
-    bundle::TriangulateAll(bundle, round.threshold, threads);
-    const std::vector<uint32_t> chosen = bundle::ChooseTracks(bundle, bundle.has_point, bundle.agrees, kPerPhoto);
-    const bundle::BundleStage stage{.loss = 1.0, .max_iterations = kIterations, .tolerance = round.tolerance};
-    if (!bundle::AdjustBundle(bundle, chosen, stage, [&] { progress.Advance(); })) return false;
-  }
-  progress.Finish();
-  constexpr double kFinal = 4.0;
-  bundle::TriangulateAll(bundle, kFinal, threads);
-  return true;
-}
-
 // Takes the pose from single photos that contradict the matches, and from shots of which no photo agrees: one that shows only sky is where its rig
 // is.
 size_t RemoveLost(bundle::BundleProblem& bundle, base::ThreadPool& threads) {
@@ -147,8 +124,7 @@ size_t RemoveLost(bundle::BundleProblem& bundle, base::ThreadPool& threads) {
     n_lost += photo.placed && !stays ? 1 : 0;
     photo.placed = photo.placed && stays;
   }
-  constexpr double kFinal = 4.0;
-  if (n_lost > 0) bundle::TriangulateAll(bundle, kFinal, threads);
+  if (n_lost > 0) bundle::TriangulateAll(bundle, bundle::kFinalThreshold, threads);
   return n_lost;
 }
 
@@ -232,7 +208,7 @@ void PlaceByRigs(const ColmapJob& job, const fs::path& from, const std::vector<i
   const size_t n_new = bundle::PlaceShots(*bundle);
   HoldFrame(*bundle);
   FillTracks(*input, *bundle);
-  if (!AdjustRigs(*bundle, threads)) {
+  if (!bundle::AdjustInRounds(*bundle, "adjust rigs", threads)) {
     throw NoModelError(job.Log(), "the bundle adjustment with one pose per shot of the rig found no solution", kNoModelFix);
   }
   const size_t n_lost = RemoveLost(*bundle, threads);

@@ -92,6 +92,7 @@ std::vector<float> CodeOfLook(const std::vector<LookPart>& look, const std::file
     sum += part.weight;
   }
   std::vector<float> code;
+  code.reserve(mixed.size());
   for (const double value : mixed) code.push_back(static_cast<float>(value / sum));
   return code;
 }

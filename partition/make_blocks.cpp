@@ -144,6 +144,7 @@ void ScaleCosts(std::vector<Block>& blocks) {
 std::vector<Block> BlocksOf(const Inputs& in, const BlockGrid& grid) {
   const std::vector<double> seen_gsds = SeenGsds(in.seen, grid);
   std::vector<Block> blocks;
+  blocks.reserve(seen_gsds.size());
   for (size_t i = 0; i < seen_gsds.size(); ++i) blocks.push_back(MakeBlock(in, grid, static_cast<int>(i), seen_gsds[i]));
   if (in.options.heights == "survey") UseCommonHeights(blocks);
   std::vector<Box> boxes;

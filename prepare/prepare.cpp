@@ -184,6 +184,7 @@ survey::Survey Prepare(const PrepareInput& input, const PrepareOptions& options,
   input::WriteInputTable(files, input.out_folder / kInputTable);
   if (!rig_file.empty()) rigs::UseRigs(rigs_of_user, rig_file, photos.usable);
   std::vector<std::string> cut;
+  cut.reserve(panoramas.size());
   for (const size_t i : panoramas) cut.push_back(photos.usable[i].name);
   rigs::CutPhotos now{picture_root, masks.folder};
   rigs::CutPanoramas(panoramas, PanoramaOptionsOf(options), input.out_folder, now, photos, threads);

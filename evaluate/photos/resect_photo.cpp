@@ -97,6 +97,7 @@ ResectedPhoto ResectPhoto(const HeldOutPhoto& task, const image::Image8& scored,
   double cost = Cost(pixels, now);
   for (int round = 0; round < kRounds; ++round) {
     std::vector<std::vector<render::RayColor>> moved;
+    moved.reserve(6);
     for (int i = 0; i < 6; ++i) moved.push_back(render(small, pose_at(x + kStepPx * unit.cwiseProduct(Vector6::Unit(i)))));
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(6, 6);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(6);
@@ -137,7 +138,8 @@ ResectedPhoto ResectPhoto(const HeldOutPhoto& task, const image::Image8& scored,
   int places = 0;
   for (size_t k = 0; k < pixels.size(); k += 1 + pixels.size() / 500) {
     const auto at = static_cast<int>(pixels[k].index);
-    const Eigen::Vector2d pixel(at % small.width + 0.5, at / small.width + 0.5);
+    const int row = at / small.width;
+    const Eigen::Vector2d pixel(at % small.width + 0.5, row + 0.5);
     const Eigen::Vector3d place = distance_m * small.RayFromImg(pixel);
     const auto there = small.ImgFromCam(geo::RotationOfVector(-result.offset.rotation) * (place - result.offset.translation));
     if (!there) continue;

@@ -73,7 +73,8 @@ std::array<float, 3> Surround::Behind(const Eigen::Vector3d& origin_enu, const E
 }
 
 void Surround::Fade(const render::Ray& ray, render::RayColor* color) const {
-  if (!(color->opacity > 0.0F)) return;
+  // Level photos show what stands beyond the ground that they see.
+  if (background_.photos.empty() || !(color->opacity > 0.0F)) return;
   const float depth = std::isfinite(color->depth_median) ? color->depth_median : color->depth;
   if (!std::isfinite(depth)) return;
   const auto share = static_cast<float>(SeenShare((ray.origin_enu + static_cast<double>(depth) * ray.direction_enu).head<2>()));

@@ -20,7 +20,8 @@ class Surround {
   double SeenShare(const Eigen::Vector2d& x_enu) const;
   // Of a ray that meets no field: the background's where photos looked, else plain.
   std::array<float, 3> Behind(const Eigen::Vector3d& origin_enu, const Eigen::Vector3d& direction_enu) const;
-  // Takes off from colour (premultiplied) and opacity of a ray that met fields what no photo confirms. Depths stay.
+  // Takes off from colour (premultiplied) and opacity of a ray that met fields what no photo confirms; nothing where the background does not say how
+  // many photos see the ground. Depths stay.
   void Fade(const render::Ray& ray, render::RayColor* color) const;
 
  private:

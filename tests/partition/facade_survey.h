@@ -3,6 +3,7 @@
 
 #include "core/base/random.h"
 #include "core/camera/photo_visibility.h"
+#include "partition/partition_options.h"
 #include "tests/partition/flown_survey.h"
 
 namespace skyquilt::partition {
@@ -49,6 +50,15 @@ inline survey::Survey FacadeSurvey() {
   }
   ObserveAll(&survey);
   return survey;
+}
+
+// So many blocks, with tables that fit the content.
+inline PartitionOptions Request(const std::string& blocks) {
+  PartitionOptions options;
+  options.blocks = blocks;
+  options.max_log2_table_size = 19;  // large enough that sizes differ
+  options.voxels_per_entry = options.max_voxels_per_entry = 1.0;
+  return options;
 }
 
 }  // namespace skyquilt::partition

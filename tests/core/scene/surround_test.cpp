@@ -65,6 +65,9 @@ TEST(Surround, WithoutNumbersOfPhotosTheWholeMapIsTrusted) {
   ground.photos.clear();
   EXPECT_EQ(Surround(ground).SeenShare({5.0, 50.0}), 1.0);
   EXPECT_EQ(Surround(ground).SeenShare({-25.0, 50.0}), 0.0);
+  render::RayColor beyond{.rgb_srgb = {0.5F, 0.5F, 0.5F}, .opacity = 1.0F, .depth = 20.0F, .depth_median = 20.0F};
+  Surround(ground).Fade({.origin_enu = {-60.0, 50.0, 20.0}, .direction_enu = {0.0, 0.0, -1.0}}, &beyond);
+  EXPECT_EQ(beyond.opacity, 1.0F) << "a wall behind the ground that level photos show";
   const Background flat{.surface = {}, .rgb_srgb = {}, .mean_srgb = {0.1F, 0.2F, 0.3F}};
   EXPECT_EQ(Surround(flat).SeenShare({1e6, 0.0}), 1.0);
   EXPECT_EQ(Surround(flat).Behind({0.0, 0.0, 0.0}, {1.0, 0.0, 1.0}), flat.mean_srgb);
